@@ -1,0 +1,8 @@
+# Numbers: formats, reciprocals, vectors, matrices.
+CORE_SRCS += $(addprefix fixed/,arithmetic.c error.c matrix.c recip.c vector.c)
+
+check-tables:  ## make the generated tables again and compare them byte for byte
+	@mkdir -p $(B)/fixed
+	$(PYTHON) fixed/recip_table.py -o $(B)/fixed/recip_table.inc
+	cmp fixed/recip_table.inc $(B)/fixed/recip_table.inc
+.PHONY: check-tables

@@ -1,0 +1,323 @@
+#include "measure.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A covering triangle at a pixel, by exact coverage. */
+typedef struct candidate {
+    double depth;
+    float u_low, u_high, v_low, v_high; /* texels the colour may come from, as a range          */
+    uint16_t colour;
+    int8_t textured;
+    ew_texture texture;
+} candidate;
+
+enum { CANDIDATES = 6 }; /* the nearest ones of a pixel */
+
+typedef struct pixel {
+    candidate kept[CANDIDATES];
+    int count;
+    uint16_t hits;
+    uint8_t truth;
+} pixel;
+
+typedef struct logged_triangle {
+    ew_raster_vertex corner[3];
+} logged_triangle;
+typedef struct logged_fragment {
+    uint16_t x, y, depth;
+    uint8_t rung;
+    ew_q20_12 u, v;
+} logged_fragment;
+
+static struct {
+    ew_target target;
+    ref_camera camera;
+    uint16_t background;
+    pixel *pixels;
+    uint8_t *exact, *drawn; /* of the source triangle at hand: how often each pixel is hit      */
+    measures m;
+    double depth_sum, u_sum, v_sum;
+    logged_triangle triangle[16];
+    int triangles, rung;
+    logged_fragment *fragment;
+    size_t fragments, fragment_room;
+} now;
+
+void ew_trace_triangle(const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *c,
+                       int rung)
+{
+    if (now.triangles == 16) abort();
+    logged_triangle *t = &now.triangle[now.triangles++];
+    t->corner[0] = *a, t->corner[1] = *b, t->corner[2] = *c;
+    now.rung = rung;
+}
+
+void ew_trace_fragment(uint16_t x, uint16_t y, uint16_t depth, ew_q20_12 u, ew_q20_12 v)
+{
+    if (now.fragments == now.fragment_room) {
+        now.fragment_room = now.fragment_room ? 2 * now.fragment_room : 1 << 16;
+        now.fragment = realloc(now.fragment, now.fragment_room * sizeof *now.fragment);
+        if (!now.fragment) abort();
+    }
+    logged_fragment f = { x, y, depth, (uint8_t)now.rung, u, v };
+    now.fragment[now.fragments++] = f;
+}
+
+static size_t pixel_count(void) { return (size_t)now.target.width * now.target.height; }
+static size_t index_of(int x, int y) { return (size_t)y * now.target.width + (size_t)x; }
+
+void measure_begin(const ew_target *target, const ref_camera *camera, uint16_t background)
+{
+    memset(&now, 0, sizeof now);
+    now.target = *target;
+    now.camera = *camera;
+    now.background = background;
+    now.pixels = calloc(pixel_count(), sizeof *now.pixels);
+    now.exact = calloc(pixel_count(), 1);
+    now.drawn = calloc(pixel_count(), 1);
+    if (!now.pixels || !now.exact || !now.drawn) abort();
+}
+
+/* ---- one source triangle ---- */
+
+static void keep(size_t at, const candidate *c)
+{
+    pixel *p = &now.pixels[at];
+    int i = p->count < CANDIDATES ? p->count++ : CANDIDATES - 1;
+    if (p->count == CANDIDATES && i == CANDIDATES - 1 && p->kept[i].depth > c->depth) return;
+    for (; i > 0 && p->kept[i - 1].depth < c->depth; i--) p->kept[i] = p->kept[i - 1];
+    p->kept[i] = *c;
+}
+
+/* The exact attributes over the disc that the tolerance allows. */
+static void attribute_range(candidate *c, const ref_triangle *t, double px, double py, double radius)
+{
+    enum { DIRECTIONS = 16 };
+    double low[2] = { HUGE_VAL, HUGE_VAL }, high[2] = { -HUGE_VAL, -HUGE_VAL };
+    for (int k = 0; k <= DIRECTIONS; k++) {
+        double angle = 2 * acos(-1.0) * k / DIRECTIONS, r = k == DIRECTIONS ? 0 : radius;
+        ref_sample s = ref_sample_at(t, px + r * cos(angle), py + r * sin(angle));
+        if (!(s.z > 0)) continue;
+        low[0] = fmin(low[0], s.u), high[0] = fmax(high[0], s.u);
+        low[1] = fmin(low[1], s.v), high[1] = fmax(high[1], s.v);
+        if (radius == 0) break;
+    }
+    c->u_low = (float)low[0], c->u_high = (float)high[0];
+    c->v_low = (float)low[1], c->v_high = (float)high[1];
+}
+
+static void mark_exact(const ew_raster *raster, const ref_triangle *truth, int *box)
+{
+    for (int k = 0; k < now.triangles; k++) {
+        const logged_triangle *t = &now.triangle[k];
+        int64_t sx[3], sy[3], left = INT64_MAX, right = INT64_MIN, top = INT64_MAX, bottom = INT64_MIN;
+        for (int i = 0; i < 3; i++) {
+            double x = ldexp(t->corner[i].x, -12), y = ldexp(t->corner[i].y, -12);
+            sx[i] = ref_snap(x, EW_SUBPIXEL_BITS);
+            sy[i] = ref_snap(y, EW_SUBPIXEL_BITS);
+            left = sx[i] < left ? sx[i] : left, right = sx[i] > right ? sx[i] : right;
+            top = sy[i] < top ? sy[i] : top, bottom = sy[i] > bottom ? sy[i] : bottom;
+            double one = ldexp(1, EW_SUBPIXEL_BITS);
+            now.m.vertex_max = fmax(now.m.vertex_max, one * ref_nearest_corner(truth, &now.camera, x, y));
+            now.m.snapped_max = fmax(now.m.snapped_max, one * ref_nearest_corner(truth, &now.camera, (double)sx[i] / one,
+                                                                                 (double)sy[i] / one));
+        }
+        int x0 = (int)fmax(0, floor(ldexp((double)left, -EW_SUBPIXEL_BITS)));
+        int x1 = (int)fmin(now.target.width - 1, ceil(ldexp((double)right, -EW_SUBPIXEL_BITS)));
+        int y0 = (int)fmax(0, floor(ldexp((double)top, -EW_SUBPIXEL_BITS)));
+        int y1 = (int)fmin(now.target.height - 1, ceil(ldexp((double)bottom, -EW_SUBPIXEL_BITS)));
+        box[0] = x0 < box[0] ? x0 : box[0], box[1] = y0 < box[1] ? y0 : box[1];
+        box[2] = x1 > box[2] ? x1 : box[2], box[3] = y1 > box[3] ? y1 : box[3];
+        for (int y = y0; y <= y1; y++) {
+            for (int x = x0; x <= x1; x++) {
+                if (!ref_covers(sx, sy, EW_SUBPIXEL_BITS, x, y)) continue;
+                now.exact[index_of(x, y)]++;
+                candidate c;
+                memset(&c, 0, sizeof c);
+                c.depth = ref_depth(truth, x + 0.5, y + 0.5);
+                c.colour = raster->material.colour;
+                c.textured = raster->material.texture != NULL;
+                c.texture = raster->texture;
+                if (c.textured) {
+                    attribute_range(&c, truth, x + 0.5, y + 0.5, raster->material.tolerance / 16.0);
+                }
+                keep(index_of(x, y), &c);
+            }
+        }
+    }
+}
+
+/* Difference of texture coordinates: core's are modulo 2^32 / 4096. */
+static double uv_error(ew_q20_12 core, double exact)
+{
+    return remainder(ldexp(core, -12) - exact, 1 << 20);
+}
+
+static void judge_fragment(const logged_fragment *f, const ref_triangle *truth)
+{
+    now.m.fragments++;
+    now.m.rung[f->rung]++;
+    now.drawn[index_of(f->x, f->y)]++;
+    pixel *p = &now.pixels[index_of(f->x, f->y)];
+    if (p->hits++) now.m.hit_again++;
+    ref_sample s = ref_sample_at(truth, f->x + 0.5, f->y + 0.5);
+    double depth = 65536 * truth->near_z / s.z;
+    if (depth >= 1 && depth < 65535) {
+        double e = fabs(f->depth + 0.5 - depth);
+        now.m.depth_max = fmax(now.m.depth_max, e);
+        now.depth_sum += e * e;
+    } else {
+        now.m.saturated++;
+    }
+    if (f->rung == EW_RUNG_CONSTANT) return;
+    double eu = uv_error(f->u, s.u), ev = uv_error(f->v, s.v);
+    now.m.textured++;
+    now.m.u_max = fmax(now.m.u_max, fabs(eu));
+    now.m.v_max = fmax(now.m.v_max, fabs(ev));
+    now.u_sum += eu * eu;
+    now.v_sum += ev * ev;
+}
+
+static void mark_truth(const ref_triangle *truth, int double_sided)
+{
+    if (!double_sided && truth->determinant <= 0) return;
+    for (int y = 0; y < now.target.height; y++) {
+        for (int x = 0; x < now.target.width; x++) {
+            if (ref_sample_at(truth, x + 0.5, y + 0.5).inside) now.pixels[index_of(x, y)].truth = 1;
+        }
+    }
+}
+
+static void judge_triangle(const ew_raster *raster, const ref_triangle *truth)
+{
+    int box[4] = { 1 << 20, 1 << 20, -1, -1 };
+    mark_exact(raster, truth, box);
+    for (size_t i = 0; i < now.fragments; i++) {
+        const logged_fragment *f = &now.fragment[i];
+        judge_fragment(f, truth);
+        box[0] = f->x < box[0] ? f->x : box[0], box[1] = f->y < box[1] ? f->y : box[1];
+        box[2] = f->x > box[2] ? f->x : box[2], box[3] = f->y > box[3] ? f->y : box[3];
+    }
+    for (int y = box[1]; y <= box[3]; y++) {
+        for (int x = box[0]; x <= box[2]; x++) {
+            size_t at = index_of(x, y);
+            if (now.exact[at] != now.drawn[at]) now.m.wrong_px++;
+            if (now.drawn[at] > 1) now.m.double_hits++;
+            now.exact[at] = now.drawn[at] = 0;
+        }
+    }
+}
+
+/* Whether the triangle may touch the picture at all; spares the truth's full scan. */
+static int may_touch(const ref_triangle *t)
+{
+    double x0 = HUGE_VAL, x1 = -HUGE_VAL, y0 = HUGE_VAL, y1 = -HUGE_VAL;
+    int in_front = 0;
+    for (int i = 0; i < 3; i++) {
+        const ref_corner *c = &t->corner[i];
+        if (c->z < t->near_z) continue;
+        in_front++;
+        double x = now.camera.left + now.camera.width / 2 * (1 + now.camera.fx * c->x / c->z);
+        double y = now.camera.top + now.camera.height / 2 * (1 - now.camera.fy * c->y / c->z);
+        x0 = fmin(x0, x), x1 = fmax(x1, x), y0 = fmin(y0, y), y1 = fmax(y1, y);
+    }
+    if (in_front == 0) return 0;
+    if (in_front < 3) return 1;
+    return x1 >= 0 && x0 <= now.target.width && y1 >= 0 && y0 <= now.target.height;
+}
+
+int measure_mesh(ew_geometry *geometry, const double mv[3][4], const ew_vertex16 *vertices,
+                 const ew_screen_vertex *screen, const uint16_t *indices, uint32_t index_count,
+                 uint8_t uv_fraction_bits)
+{
+    for (uint32_t i = 0; i < index_count; i += 3) {
+        ref_corner corner[3];
+        for (int k = 0; k < 3; k++) {
+            const ew_vertex16 *v = &vertices[indices[i + (uint32_t)k]];
+            double p[3] = { v->x / 32768.0, v->y / 32768.0, v->z / 32768.0 }, view[3];
+            for (int r = 0; r < 3; r++) view[r] = mv[r][0] * p[0] + mv[r][1] * p[1] + mv[r][2] * p[2] + mv[r][3];
+            corner[k] = (ref_corner){ view[0], view[1], -view[2], ldexp(v->u, -uv_fraction_bits),
+                                      ldexp(v->v, -uv_fraction_bits) };
+        }
+        now.triangles = 0;
+        now.fragments = 0;
+        int32_t result = ew_draw_triangles(geometry, vertices, screen, indices + i, 3, uv_fraction_bits);
+        if (result < 0) return (int)result;
+        ref_triangle truth;
+        if (!ref_triangle_init(&truth, &now.camera, corner)) {
+            now.m.wrong_px += (long)now.fragments; /* drawn, though seen edge-on */
+            continue;
+        }
+        if (now.triangles || now.fragments) judge_triangle(geometry->raster, &truth);
+        if (may_touch(&truth)) mark_truth(&truth, geometry->raster->material.flags & EW_DOUBLE_SIDED);
+    }
+    return 0;
+}
+
+/* ---- the picture ---- */
+
+static int colour_allowed(const candidate *c, uint16_t colour, double border)
+{
+    if (!c->textured) return colour == c->colour;
+    int width = 1 << c->texture.log2_width, height = 1 << c->texture.log2_height;
+    double u0 = floor(c->u_low - border), u1 = floor(c->u_high + border);
+    double v0 = floor(c->v_low - border), v1 = floor(c->v_high + border);
+    if (u1 - u0 >= width) u0 = 0, u1 = width - 1;
+    if (v1 - v0 >= height) v0 = 0, v1 = height - 1;
+    for (double v = v0; v <= v1; v++) {
+        for (double u = u0; u <= u1; u++) {
+            int iu = (int)((long long)u & (width - 1)), iv = (int)((long long)v & (height - 1));
+            if (c->texture.texels[iv * width + iu] == colour) return 1;
+        }
+    }
+    return 0;
+}
+
+static int pixel_right(const pixel *p, uint16_t colour, double border)
+{
+    if (p->count == 0) return colour == now.background;
+    for (int i = 0; i < p->count && p->kept[i].depth >= p->kept[0].depth - 1; i++) {
+        if (colour_allowed(&p->kept[i], colour, border)) return 1;
+    }
+    return 0;
+}
+
+void measure_end(measures *result, double border)
+{
+    for (int y = 0; y < now.target.height; y++) {
+        for (int x = 0; x < now.target.width; x++) {
+            const pixel *p = &now.pixels[index_of(x, y)];
+            if (p->hits) now.m.covered_px++;
+            if ((p->hits != 0) != p->truth) now.m.wrong_truth_px++;
+            uint16_t colour = now.target.colour[(size_t)y * now.target.stride + (size_t)x];
+            if (!pixel_right(p, colour, border)) now.m.colour_px++;
+        }
+    }
+    long judged = now.m.fragments - now.m.saturated;
+    now.m.depth_rms = judged ? sqrt(now.depth_sum / (double)judged) : 0;
+    now.m.u_rms = now.m.textured ? sqrt(now.u_sum / (double)now.m.textured) : 0;
+    now.m.v_rms = now.m.textured ? sqrt(now.v_sum / (double)now.m.textured) : 0;
+    *result = now.m;
+    free(now.pixels);
+    free(now.exact);
+    free(now.drawn);
+    free(now.fragment);
+    memset(&now, 0, sizeof now);
+}
+
+void measure_print_heading(void)
+{
+    printf("%-22s %8s %8s %6s %6s %6s %7s %7s %7s %7s %7s %7s %7s %6s %7s\n", "picture", "fragment", "covered",
+           "wrong", "double", "truth", "vertex", "depth", "rms", "u max", "u rms", "v max", "v rms", "colour", "affine");
+}
+
+void measure_print(const char *name, const measures *m)
+{
+    printf("%-22s %8ld %8ld %6ld %6ld %6ld %7.4f %7.3f %7.3f %7.4f %7.4f %7.4f %7.4f %6ld %6.1f%%\n", name,
+           m->fragments, m->covered_px, m->wrong_px, m->double_hits, m->wrong_truth_px, m->snapped_max,
+           m->depth_max, m->depth_rms, m->u_max, m->u_rms, m->v_max, m->v_rms, m->colour_px,
+           m->fragments ? 100.0 * (double)m->rung[EW_RUNG_AFFINE] / (double)m->fragments : 0.0);
+}

@@ -1,0 +1,48 @@
+/* Draws triangles with the core, built with EW_TRACE = 1, and holds every fragment and the
+ * final picture against the referee. One picture at a time: the trace functions have no
+ * context. */
+#ifndef EW_MEASURE_H
+#define EW_MEASURE_H
+
+#include "edgewalk/geometry.h"
+#include "../reference/referee.h"
+
+typedef struct measures {
+    long fragments;        /* drawn, before the depth test                                     */
+    long covered_px;       /* pixels with at least one                                         */
+    long wrong_px;         /* fragments missing or extra, against exact coverage of the
+                              snapped vertices, counted for each triangle                      */
+    long double_hits;      /* of those, pixels hit twice by one source triangle                */
+    long hit_again;        /* fragments on pixels that had one: overdraw, 0 for scenes without  */
+    long wrong_truth_px;   /* pixels covered by the core or by the unsnapped truth, not by both */
+    double vertex_max;     /* farthest vertex from its exact projection, before the snap, in
+                              snapped units; the snap adds at most 0.5                          */
+    double snapped_max;    /* the same after the snap: the contract says 0.75                   */
+    double depth_max, depth_rms; /* |stored + 1/2 - 65536 near/z|, where 1 <= 65536 near/z < 65535 */
+    long saturated;        /* fragments left out of depth_*                                    */
+    double u_max, u_rms, v_max, v_rms; /* texels, fragments of textured triangles               */
+    long textured;         /* how many those are                                              */
+    long rung[8];          /* fragments by ew_rung                                            */
+    long colour_px;        /* pixels whose colour no fragment may have (see measure_end)       */
+} measures;
+
+/* Begins a picture of `target` (already cleared to `background`, depth 0). */
+void measure_begin(const ew_target *target, const ref_camera *camera, uint16_t background);
+
+/* Draws one mesh, a triangle at a time, with geometry's raster and transform as they are
+ * set. `model_view` takes a vertex (as q1.15) to view space in double. Returns 0, or the
+ * first error of ew_draw_triangles. */
+int measure_mesh(ew_geometry *geometry, const double model_view[3][4], const ew_vertex16 *vertices,
+                 const ew_screen_vertex *screen, const uint16_t *indices, uint32_t index_count,
+                 uint8_t uv_fraction_bits);
+
+/* Ends the picture. A pixel's colour is right when it is that of a fragment within one
+ * depth unit of the nearest, at a texel that the exact u and v touch over the disc of the
+ * material's tolerance around the pixel's centre, widened by `border` texel. */
+void measure_end(measures *result, double border);
+
+/* One line of figures, or their heading. */
+void measure_print_heading(void);
+void measure_print(const char *name, const measures *m);
+
+#endif

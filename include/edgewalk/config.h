@@ -1,0 +1,41 @@
+/* edgewalk/config.h - what a build of the core may choose.
+ *
+ * Every macro may be set on the compiler's command line; the value is the same for
+ * the library and for whoever includes its headers. Each has a default and a range
+ * that is checked here.
+ */
+#ifndef EW_CONFIG_H
+#define EW_CONFIG_H
+
+/* Fraction bits of a snapped vertex position, 4 to 8. 8 is the default: it is what
+ * the coverage promise of docs/conventions.md is stated for. */
+#ifndef EW_SUBPIXEL_BITS
+#define EW_SUBPIXEL_BITS 8
+#endif
+#if EW_SUBPIXEL_BITS < 4 || EW_SUBPIXEL_BITS > 8
+#error "EW_SUBPIXEL_BITS: 4 to 8"
+#endif
+
+/* log2 of the number of entries of the reciprocal table, 4 to 9. A table of 2^b
+ * entries takes 2^(b+1) + 2 bytes of flash. */
+#ifndef EW_RECIP_BITS
+#define EW_RECIP_BITS 8
+#endif
+#if EW_RECIP_BITS < 4 || EW_RECIP_BITS > 9
+#error "EW_RECIP_BITS: 4 to 9"
+#endif
+
+/* Check of what a caller promised (a NULL that must not be one, a size out of its
+ * stated range). Compiled away by default; a host build sets it to assert(). Bad
+ * data - a file, a stream - is never checked with it. */
+#ifndef EW_ASSERT
+#define EW_ASSERT(condition) ((void)0)
+#endif
+
+/* Called for every fragment, before the depth test, when a build defines EW_TRACE as
+ * 1 (the host's accuracy tests do). 0, the default, leaves no trace in the code. */
+#ifndef EW_TRACE
+#define EW_TRACE 0
+#endif
+
+#endif

@@ -1,0 +1,91 @@
+/* edgewalk/geometry.h - indexed vertices to raster triangles: transform, cull, clip, project.
+ *
+ * View space is right-handed and the camera looks down -z, as in glTF; y points up there
+ * and down on the screen.
+ */
+#ifndef EW_GEOMETRY_H
+#define EW_GEOMETRY_H
+
+#include <stdint.h>
+
+#include "error.h"
+#include "fixed.h"
+#include "raster.h"
+
+/* A corner as it lies in flash: 10 bytes, aligned to 2. */
+typedef struct ew_vertex16 {
+    ew_q1_15 x, y, z; /* in the primitive's box                                           */
+    int16_t u, v;     /* texels times 2^(fraction bits of the primitive)                   */
+} ew_vertex16;
+
+/* A corner after the transform: 16 bytes. */
+typedef struct ew_screen_vertex {
+    ew_q20_12 x, y;   /* px; only with neither EW_OUT_NEAR nor EW_OUT_GUARD                */
+    ew_uq1_31 w;      /* near/z                                                            */
+    uint8_t outcode;  /* EW_OUT_*                                                          */
+} ew_screen_vertex;
+
+enum {
+    EW_OUT_LEFT = 1, EW_OUT_RIGHT = 2, EW_OUT_TOP = 4, EW_OUT_BOTTOM = 8, /* of the viewport */
+    EW_OUT_NEAR = 16, /* nearer than the near plane                                        */
+    EW_OUT_GUARD = 32 /* beyond EW_GUARD_PX                                                */
+};
+
+/* Where a picture lies in the target; may reach over its borders. */
+typedef struct ew_viewport {
+    int16_t x, y;           /* top-left corner, px, -8192 to 8191                          */
+    uint16_t width, height; /* px, 1 to 8192                                               */
+} ew_viewport;
+
+/* Model space to the screen, homogeneous: px = x/w, py = y/w, depth = near/w. */
+typedef struct ew_transform {
+    ew_row x, y, w;
+    int64_t near_w;     /* the near distance in units of 2^(w.e - 45), those of row w's sums */
+    ew_viewport viewport;
+} ew_transform;
+
+/* Makes the transform for one model: `projection` is an infinite-far perspective matrix
+ * (ew_mat44_perspective), `model_view` takes vertices as q1.15 to view space.
+ * Returns EW_OK; EW_ERR_ARGUMENT for a projection of another kind or an empty viewport;
+ * EW_ERR_RANGE when the model's size or distance is more than about 2^30 times the near
+ * distance. */
+int ew_transform_set(ew_transform *transform, const ew_mat44 *projection, const ew_mat34 *model_view,
+                     const ew_viewport *viewport);
+
+/* Transforms `count` vertices. Positions are rounded to the nearest 1/4096 px of the exact
+ * quotient of the rows' sums, off by at most one unit more.
+ * `out` must not overlap `in`. */
+void ew_transform_vertices(const ew_transform *transform, const ew_vertex16 *in, uint32_t count,
+                           ew_screen_vertex *out);
+
+/* A corner of a clipped triangle; the clipper's own. */
+typedef struct ew_clip_vertex {
+    int64_t x, y, w; /* in one unit: src/geometry/clip.c                                   */
+    ew_q20_12 u, v;
+    int8_t corner;   /* of the triangle, 0 to 2; -1 for one that the clipper made          */
+} ew_clip_vertex;
+
+enum { EW_CLIP_MAX = 8 }; /* a triangle cut by five planes */
+
+/* The memory of the geometry layer: the caller's, about 700 bytes. */
+typedef struct ew_geometry {
+    ew_raster *raster;
+    ew_transform transform;
+    ew_clip_vertex polygon[2][EW_CLIP_MAX];
+} ew_geometry;
+
+/* Points the layer at a raster context. */
+void ew_geometry_init(ew_geometry *geometry, ew_raster *raster);
+
+/* Draws triangles with the raster's material and geometry->transform. `screen` holds what
+ * ew_transform_vertices made of `vertices` with that transform; `indices` has `index_count`
+ * entries, a multiple of three, each below the number of vertices (the caller's promise;
+ * ew_scene_open checks it for baked scenes). No triangle is left out: one that crosses the
+ * near plane or leaves the guard band is clipped.
+ * Returns the number of triangles that reached a pixel, or the first error of
+ * ew_raster_triangle. */
+int32_t ew_draw_triangles(ew_geometry *geometry, const ew_vertex16 *vertices,
+                          const ew_screen_vertex *screen, const uint16_t *indices,
+                          uint32_t index_count, uint8_t uv_fraction_bits);
+
+#endif

@@ -1,0 +1,58 @@
+/* The raster context: target, scissor, material, clearing. */
+#include "edgewalk/raster.h"
+
+int ew_raster_init(ew_raster *raster, const ew_target *target)
+{
+    if (!target->colour || target->width < 1 || target->width > EW_TARGET_MAX || target->height < 1 ||
+        target->height > EW_TARGET_MAX || target->stride < target->width) {
+        return EW_ERR_ARGUMENT;
+    }
+    raster->target = *target;
+    raster->scissor.x0 = raster->scissor.y0 = 0;
+    raster->scissor.x1 = target->width;
+    raster->scissor.y1 = target->height;
+    ew_material black = { NULL, 0, 0, EW_RUNG_CONSTANT, 0 };
+    return ew_raster_set_material(raster, &black);
+}
+
+int ew_raster_set_scissor(ew_raster *raster, const ew_rect *rect)
+{
+    if (rect->x0 > rect->x1 || rect->y0 > rect->y1 || rect->x1 > raster->target.width ||
+        rect->y1 > raster->target.height) {
+        return EW_ERR_ARGUMENT;
+    }
+    raster->scissor = *rect;
+    return EW_OK;
+}
+
+int ew_raster_set_material(ew_raster *raster, const ew_material *material)
+{
+    const ew_texture *texture = material->texture;
+    if (material->rung > EW_RUNG_CONSTANT || material->tolerance > EW_TOLERANCE_MAX ||
+        (material->flags & ~(EW_DOUBLE_SIDED | EW_NO_DEPTH_TEST | EW_NO_DEPTH_WRITE)) ||
+        (texture && (!texture->texels || texture->log2_width > EW_TEXTURE_LOG2_MAX ||
+                     texture->log2_height > EW_TEXTURE_LOG2_MAX))) {
+        return EW_ERR_ARGUMENT;
+    }
+    raster->material = *material;
+    if (texture) {
+        raster->texture = *texture;
+        raster->material.texture = &raster->texture;
+    } else {
+        raster->texture.texels = NULL;
+        raster->texture.log2_width = raster->texture.log2_height = 0;
+    }
+    return EW_OK;
+}
+
+void ew_raster_clear(ew_raster *raster, uint16_t rgb565)
+{
+    const ew_rect *r = &raster->scissor;
+    for (uint16_t y = r->y0; y < r->y1; y++) {
+        size_t row = (size_t)y * raster->target.stride;
+        for (uint16_t x = r->x0; x < r->x1; x++) {
+            raster->target.colour[row + x] = rgb565;
+            if (raster->target.depth) raster->target.depth[row + x] = 0;
+        }
+    }
+}

@@ -1,0 +1,431 @@
+/* The baked scene reader: docs/scene-format.md. Everything is checked once, in
+ * ew_scene_open; the functions after it trust the bytes. */
+#include "edgewalk/scene.h"
+
+#include <string.h>
+
+/* Vertices, indices and texels are used where they lie, as the machine's own numbers. */
+#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
+#error "baked scenes are little-endian and used in place"
+#endif
+typedef char ew_vertex16_is_ten_bytes[sizeof(ew_vertex16) == 10 ? 1 : -1];
+
+enum { HEADER_BYTES = 32, ENTRY_BYTES = 16, MAX_SECTIONS = 32, ROW_BYTES = 20, MANTISSA_LIMIT = 1 << 30 };
+
+typedef struct section_rule {
+    char tag[5];
+    uint16_t record_bytes;
+    uint8_t required, at_most_one;
+} section_rule;
+
+static const section_rule rules[EW_SECTION_COUNT] = {
+    { "CAMR", 72, 1, 1 }, { "BOUN", 20, 1, 1 }, { "NODE", 68, 1, 0 }, { "PRIM", 40, 1, 0 },
+    { "VERT", 10, 1, 0 }, { "INDX", 2, 1, 0 },  { "MATL", 8, 1, 0 },  { "TEXR", 8, 0, 0 },
+    { "TEXL", 2, 0, 0 },  { "TRAK", 12, 0, 0 }, { "KEYS", 32, 0, 0 }, { "ANIM", 4, 0, 1 }
+};
+
+/* ---- little-endian numbers ---- */
+
+static uint16_t u16_at(const uint8_t *p) { return (uint16_t)(p[0] | (uint16_t)p[1] << 8); }
+static uint32_t u32_at(const uint8_t *p)
+{
+    return p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
+}
+static int16_t i16_at(const uint8_t *p) { return (int16_t)u16_at(p); }
+static int32_t i32_at(const uint8_t *p) { return (int32_t)u32_at(p); }
+
+static int tag_is(const uint8_t *p, const char *tag)
+{
+    return p[0] == (uint8_t)tag[0] && p[1] == (uint8_t)tag[1] && p[2] == (uint8_t)tag[2] &&
+           p[3] == (uint8_t)tag[3];
+}
+
+static void row_at(const uint8_t *p, ew_row *row)
+{
+    for (int k = 0; k < 4; k++) row->m[k] = i32_at(p + 4 * k);
+    row->e = i16_at(p + 16);
+}
+static void mat34_at(const uint8_t *p, ew_mat34 *m)
+{
+    for (int k = 0; k < 3; k++) row_at(p + ROW_BYTES * k, &m->row[k]);
+}
+
+/* CRC-32 of the whole file with bytes 12 to 15 as zero; four bits at a time, so that the
+ * table takes 64 bytes. */
+static uint32_t checksum(const uint8_t *p, uint32_t size)
+{
+    static const uint32_t table[16] = {
+        0x00000000u, 0x1DB71064u, 0x3B6E20C8u, 0x26D930ACu, 0x76DC4190u, 0x6B6B51F4u,
+        0x4DB26158u, 0x5005713Cu, 0xEDB88320u, 0xF00F9344u, 0xD6D6A3E8u, 0xCB61B38Cu,
+        0x9B64C2B0u, 0x86D3D2D4u, 0xA00AE278u, 0xBDBDF21Cu
+    };
+    uint32_t crc = 0xFFFFFFFFu;
+    for (uint32_t i = 0; i < size; i++) {
+        crc ^= i >= 12 && i < 16 ? 0u : p[i];
+        crc = crc >> 4 ^ table[crc & 15u];
+        crc = crc >> 4 ^ table[crc & 15u];
+    }
+    return ~crc;
+}
+
+/* ---- checks ---- */
+
+static int row_ok(const uint8_t *p)
+{
+    for (int k = 0; k < 4; k++) {
+        int32_t m = i32_at(p + 4 * k);
+        if (m > MANTISSA_LIMIT || m < -MANTISSA_LIMIT) return 0;
+    }
+    int16_t e = i16_at(p + 16);
+    return e >= -1000 && e <= 1000 && u16_at(p + 18) == 0;
+}
+static int rows_ok(const uint8_t *p, int count)
+{
+    for (int k = 0; k < count; k++) {
+        if (!row_ok(p + ROW_BYTES * k)) return 0;
+    }
+    return 1;
+}
+
+/* first .. first + count lies in 0 .. all */
+static int range_ok(uint32_t first, uint32_t count, uint32_t all)
+{
+    return first <= all && count <= all - first;
+}
+
+static const uint8_t *record(const ew_scene *s, int section, uint32_t i)
+{
+    return s->section[section].records + (size_t)i * rules[section].record_bytes;
+}
+
+static int camera_ok(const uint8_t *p)
+{
+    int32_t focal = i32_at(p + 60), near_m = i32_at(p + 64);
+    int16_t near_e = i16_at(p + 68);
+    return rows_ok(p, 3) && focal > 0 && focal <= 1024 * 65536 && near_m >= MANTISSA_LIMIT / 2 &&
+           near_m < MANTISSA_LIMIT && near_e >= -1000 && near_e <= 1000 && u16_at(p + 70) == 0;
+}
+
+static int node_ok(const ew_scene *s, uint32_t i)
+{
+    const uint8_t *p = record(s, EW_SECTION_NODE, i);
+    int16_t parent = i16_at(p), track = i16_at(p + 2);
+    return parent >= -1 && parent < (int32_t)i && track >= -1 &&
+           track < (int32_t)s->section[EW_SECTION_TRAK].count &&
+           range_ok(u16_at(p + 4), u16_at(p + 6), s->section[EW_SECTION_PRIM].count) && rows_ok(p + 8, 3);
+}
+
+static int primitive_ok(const ew_scene *s, uint32_t i)
+{
+    const uint8_t *p = record(s, EW_SECTION_PRIM, i);
+    uint32_t vertices = u16_at(p + 4), first_index = u32_at(p + 8), indices = u32_at(p + 12);
+    if (vertices < 1 || !range_ok(u32_at(p), vertices, s->section[EW_SECTION_VERT].count) ||
+        u16_at(p + 6) >= s->section[EW_SECTION_MATL].count || indices % 3 != 0 ||
+        !range_ok(first_index, indices, s->section[EW_SECTION_INDX].count) || !row_ok(p + 16) ||
+        p[36] > 12 || p[37] || p[38] || p[39]) {
+        return 0;
+    }
+    for (uint32_t k = 0; k < indices; k++) {
+        if (u16_at(record(s, EW_SECTION_INDX, first_index + k)) >= vertices) return 0;
+    }
+    return 1;
+}
+
+static int material_ok(const ew_scene *s, uint32_t i)
+{
+    const uint8_t *p = record(s, EW_SECTION_MATL, i);
+    uint16_t texture = u16_at(p + 2);
+    return (texture == 0xFFFF || texture < s->section[EW_SECTION_TEXR].count) && u16_at(p + 4) <= 1 &&
+           u16_at(p + 6) <= EW_TOLERANCE_MAX;
+}
+
+static int texture_ok(const ew_scene *s, uint32_t i)
+{
+    const uint8_t *p = record(s, EW_SECTION_TEXR, i);
+    return p[4] <= EW_TEXTURE_LOG2_MAX && p[5] <= EW_TEXTURE_LOG2_MAX && p[6] == 0 && p[7] == 0 &&
+           range_ok(u32_at(p), (uint32_t)1 << (p[4] + p[5]), s->section[EW_SECTION_TEXL].count);
+}
+
+static int track_ok(const ew_scene *s, uint32_t i)
+{
+    const uint8_t *p = record(s, EW_SECTION_TRAK, i);
+    int16_t et = i16_at(p + 8), es = i16_at(p + 10);
+    return u16_at(p + 4) >= 1 && u16_at(p + 6) >= 1 && et >= -1000 && et <= 1000 && es >= -1000 &&
+           es <= 1000 && range_ok(u32_at(p), u16_at(p + 4), s->section[EW_SECTION_KEYS].count);
+}
+
+/* The dot product of two keys' quaternions in units of 2^-26: |.| <= 2^30. */
+static int32_t quaternion_dot(const uint8_t *a, const uint8_t *b)
+{
+    int32_t sum = 0;
+    for (int k = 0; k < 4; k++) sum += (int32_t)i16_at(a + 12 + 2 * k) * i16_at(b + 12 + 2 * k) / 4;
+    return sum;
+}
+
+static int key_ok(const ew_scene *s, uint32_t i)
+{
+    const uint8_t *p = record(s, EW_SECTION_KEYS, i);
+    for (int k = 0; k < 3; k++) {
+        int32_t t = i32_at(p + 4 * k), scale = i32_at(p + 20 + 4 * k);
+        if (t > MANTISSA_LIMIT || t < -MANTISSA_LIMIT || scale > MANTISSA_LIMIT || scale < -MANTISSA_LIMIT) {
+            return 0;
+        }
+    }
+    /* |q|^2 within 1/128 of 1, so |q| within 1/256; units of 2^-26 (see quaternion_dot) */
+    int32_t length = quaternion_dot(p, p), one = (int32_t)1 << 26;
+    return length > one - one / 128 && length < one + one / 128;
+}
+
+typedef int record_check(const ew_scene *scene, uint32_t i);
+
+static int all_ok(const ew_scene *s, int section, record_check *check)
+{
+    for (uint32_t i = 0; i < s->section[section].count; i++) {
+        if (!check(s, i)) return 0;
+    }
+    return 1;
+}
+
+/* Between two keys the rotation goes the short way only if their dot product is not
+ * negative; neighbours in different tracks do not matter. */
+static int keys_turn_the_short_way(const ew_scene *s)
+{
+    for (uint32_t i = 0; i < s->section[EW_SECTION_TRAK].count; i++) {
+        const uint8_t *p = record(s, EW_SECTION_TRAK, i);
+        for (uint32_t k = 1; k < u16_at(p + 4); k++) {
+            const uint8_t *key = record(s, EW_SECTION_KEYS, u32_at(p) + k);
+            if (quaternion_dot(key - rules[EW_SECTION_KEYS].record_bytes, key) < 0) return 0;
+        }
+    }
+    return 1;
+}
+
+static int read_directory(ew_scene *s, const uint8_t *bytes, uint32_t size)
+{
+    uint32_t sections = u16_at(bytes + 16), after = HEADER_BYTES + ENTRY_BYTES * sections;
+    if (sections < 1 || sections > MAX_SECTIONS) return EW_ERR_CORRUPT;
+    if (after > size) return EW_ERR_TRUNCATED;
+    for (uint32_t i = 0; i < sections; i++) {
+        const uint8_t *entry = bytes + HEADER_BYTES + ENTRY_BYTES * i;
+        uint32_t offset = u32_at(entry + 4), count = u32_at(entry + 8), each = u32_at(entry + 12);
+        int known = 0;
+        while (known < EW_SECTION_COUNT && !tag_is(entry, rules[known].tag)) known++;
+        if (known == EW_SECTION_COUNT) {
+            if (entry[0] >= 'a' && entry[0] <= 'z') continue;
+            return EW_ERR_CORRUPT;
+        }
+        const section_rule *rule = &rules[known];
+        if (s->section[known].records || each != rule->record_bytes || offset % 4 != 0 || offset < after ||
+            offset > size || count > (size - offset) / each || (rule->at_most_one && count > 1)) {
+            return EW_ERR_CORRUPT;
+        }
+        s->section[known].records = bytes + offset;
+        s->section[known].count = count;
+    }
+    for (int i = 0; i < EW_SECTION_COUNT; i++) {
+        if (rules[i].required && !s->section[i].count) return EW_ERR_CORRUPT;
+    }
+    return EW_OK;
+}
+
+int ew_scene_open(ew_scene *scene, const void *data, size_t size)
+{
+    const uint8_t *bytes = data;
+    if ((uintptr_t)bytes % 4 != 0) return EW_ERR_ARGUMENT;
+    if (size < 4) return EW_ERR_TRUNCATED;
+    if (!tag_is(bytes, "EWB\x1A")) return EW_ERR_MAGIC;
+    if (size < HEADER_BYTES) return EW_ERR_TRUNCATED;
+    if (u16_at(bytes + 4) != 1) return EW_ERR_VERSION;
+    uint32_t stated = u32_at(bytes + 8);
+    if (stated > size) return EW_ERR_TRUNCATED;
+    if (stated < size || stated % 4 != 0 || u16_at(bytes + 6) != HEADER_BYTES) return EW_ERR_CORRUPT;
+    if (checksum(bytes, stated) != u32_at(bytes + 12)) return EW_ERR_CHECKSUM;
+
+    ew_scene s;
+    memset(&s, 0, sizeof s);
+    int error = read_directory(&s, bytes, stated);
+    if (error) return error;
+    if (!camera_ok(record(&s, EW_SECTION_CAMR, 0)) || !row_ok(record(&s, EW_SECTION_BOUN, 0)) ||
+        !all_ok(&s, EW_SECTION_NODE, node_ok) || !all_ok(&s, EW_SECTION_PRIM, primitive_ok) ||
+        !all_ok(&s, EW_SECTION_MATL, material_ok) || !all_ok(&s, EW_SECTION_TEXR, texture_ok) ||
+        !all_ok(&s, EW_SECTION_TRAK, track_ok) || !all_ok(&s, EW_SECTION_KEYS, key_ok) ||
+        !keys_turn_the_short_way(&s)) {
+        return EW_ERR_CORRUPT;
+    }
+    for (uint32_t i = 0; i < s.section[EW_SECTION_PRIM].count; i++) {
+        uint16_t vertices = u16_at(record(&s, EW_SECTION_PRIM, i) + 4);
+        if (vertices > s.largest_primitive) s.largest_primitive = vertices;
+    }
+    if (s.section[EW_SECTION_ANIM].count) {
+        s.duration_ms = u32_at(record(&s, EW_SECTION_ANIM, 0));
+        if (s.duration_ms < 1) return EW_ERR_CORRUPT;
+    }
+    *scene = s;
+    return EW_OK;
+}
+
+/* ---- records ---- */
+
+void ew_scene_get_camera(const ew_scene *scene, ew_scene_camera *camera)
+{
+    const uint8_t *p = record(scene, EW_SECTION_CAMR, 0);
+    mat34_at(p, &camera->view);
+    camera->focal = i32_at(p + 60);
+    camera->near_z.m = i32_at(p + 64);
+    camera->near_z.e = i16_at(p + 68);
+}
+
+void ew_scene_get_bounds(const ew_scene *scene, ew_row *centre_radius)
+{
+    row_at(record(scene, EW_SECTION_BOUN, 0), centre_radius);
+}
+
+void ew_scene_get_node(const ew_scene *scene, uint32_t i, ew_scene_node *node)
+{
+    const uint8_t *p = record(scene, EW_SECTION_NODE, i);
+    node->parent = i16_at(p);
+    node->track = i16_at(p + 2);
+    node->first_primitive = u16_at(p + 4);
+    node->primitive_count = u16_at(p + 6);
+    mat34_at(p + 8, &node->local);
+}
+
+void ew_scene_get_primitive(const ew_scene *scene, uint32_t i, ew_scene_primitive *primitive)
+{
+    const uint8_t *p = record(scene, EW_SECTION_PRIM, i);
+    ew_row box;
+    row_at(p + 16, &box);
+    for (int k = 0; k < 3; k++) { /* o + s p: a diagonal matrix, and o */
+        ew_row *row = &primitive->dequantise.row[k];
+        row->m[0] = row->m[1] = row->m[2] = 0;
+        row->m[k] = box.m[3];
+        row->m[3] = box.m[k];
+        row->e = box.e;
+    }
+    /* sections start on multiples of 4 and both records have even sizes */
+    primitive->vertices = (const void *)record(scene, EW_SECTION_VERT, u32_at(p));
+    primitive->indices = (const void *)record(scene, EW_SECTION_INDX, u32_at(p + 8));
+    primitive->index_count = u32_at(p + 12);
+    primitive->vertex_count = u16_at(p + 4);
+    primitive->material = u16_at(p + 6);
+    primitive->uv_fraction_bits = p[36];
+}
+
+void ew_scene_get_material(const ew_scene *scene, uint32_t i, ew_material *material, ew_texture *texture)
+{
+    const uint8_t *p = record(scene, EW_SECTION_MATL, i);
+    uint16_t number = u16_at(p + 2);
+    material->colour = u16_at(p);
+    material->flags = u16_at(p + 4) & 1 ? EW_DOUBLE_SIDED : 0;
+    material->tolerance = u16_at(p + 6);
+    material->rung = EW_RUNG_AUTO;
+    material->texture = NULL;
+    if (number == 0xFFFF) return;
+    const uint8_t *t = record(scene, EW_SECTION_TEXR, number);
+    texture->texels = (const void *)record(scene, EW_SECTION_TEXL, u32_at(t));
+    texture->log2_width = t[4];
+    texture->log2_height = t[5];
+    material->texture = texture;
+}
+
+/* ---- movement ---- */
+
+/* a + (b - a) f / 2^16, 0 <= f < 2^16. */
+static int32_t between(int32_t a, int32_t b, uint32_t f)
+{
+    return (int32_t)(a + EW_ASR(((int64_t)b - a) * (int64_t)f, 16));
+}
+
+static int track_matrix(const ew_scene *scene, uint32_t track, uint32_t time_ms, ew_mat34 *out)
+{
+    const uint8_t *p = record(scene, EW_SECTION_TRAK, track);
+    uint32_t first = u32_at(p), last = (uint32_t)u16_at(p + 4) - 1u, interval = u16_at(p + 6);
+    uint32_t k = time_ms / interval, f = (time_ms % interval << 16) / interval;
+    if (k >= last) k = last, f = 0;
+    const uint8_t *a = record(scene, EW_SECTION_KEYS, first + k);
+    const uint8_t *b = f ? a + rules[EW_SECTION_KEYS].record_bytes : a;
+
+    int32_t t[3], s[3], q[4];
+    for (int i = 0; i < 3; i++) {
+        t[i] = between(i32_at(a + 4 * i), i32_at(b + 4 * i), f);
+        s[i] = between(i32_at(a + 20 + 4 * i), i32_at(b + 20 + 4 * i), f);
+    }
+    for (int i = 0; i < 4; i++) {
+        q[i] = between(ew_q2_30_from_q2_14(i16_at(a + 12 + 2 * i)),
+                       ew_q2_30_from_q2_14(i16_at(b + 12 + 2 * i)), f);
+    }
+    ew_quat rotation = { q[0], q[1], q[2], q[3] };
+    return ew_mat34_from_trs(out, t, i16_at(p + 8), &rotation, s, i16_at(p + 10));
+}
+
+int ew_scene_pose(const ew_scene *scene, uint32_t time_ms, ew_mat34 *world)
+{
+    for (uint32_t i = 0; i < scene->section[EW_SECTION_NODE].count; i++) {
+        ew_scene_node node;
+        ew_scene_get_node(scene, i, &node);
+        if (node.track >= 0) {
+            int error = track_matrix(scene, (uint32_t)node.track, time_ms, &node.local);
+            if (error) return error;
+        }
+        if (node.parent < 0) {
+            world[i] = node.local;
+            continue;
+        }
+        int error = ew_mat34_mul(&world[i], &world[node.parent], &node.local);
+        if (error) return error;
+    }
+    return EW_OK;
+}
+
+/* ---- drawing ---- */
+
+static int32_t draw_primitive(const ew_scene *scene, uint32_t number, const ew_mat44 *projection,
+                              const ew_mat34 *node_view, const ew_viewport *viewport, ew_geometry *geometry,
+                              ew_screen_vertex *scratch)
+{
+    ew_scene_primitive primitive;
+    ew_scene_get_primitive(scene, number, &primitive);
+    ew_material material;
+    ew_texture texture;
+    ew_scene_get_material(scene, primitive.material, &material, &texture);
+    ew_mat34 model_view;
+    int error = ew_mat34_mul(&model_view, node_view, &primitive.dequantise);
+    if (!error) error = ew_raster_set_material(geometry->raster, &material);
+    if (!error) error = ew_transform_set(&geometry->transform, projection, &model_view, viewport);
+    if (error) return error;
+    ew_transform_vertices(&geometry->transform, primitive.vertices, primitive.vertex_count, scratch);
+    return ew_draw_triangles(geometry, primitive.vertices, scratch, primitive.indices,
+                             primitive.index_count, primitive.uv_fraction_bits);
+}
+
+int32_t ew_scene_draw(const ew_scene *scene, const ew_scene_camera *camera, const ew_mat34 *world,
+                      const ew_viewport *viewport, ew_geometry *geometry, ew_screen_vertex *scratch)
+{
+    /* focal_y = focal; focal_x = focal height/width, nearest */
+    uint32_t rest;
+    if (viewport->width < 1) return EW_ERR_ARGUMENT;
+    uint64_t across = (uint64_t)(uint32_t)camera->focal * viewport->height + viewport->width / 2;
+    if (across >> 32 >= viewport->width) return EW_ERR_ARGUMENT;
+    uint32_t focal_x = ew_udiv64_32(across, viewport->width, &rest);
+    if (focal_x > INT32_MAX) return EW_ERR_ARGUMENT;
+    ew_mat44 projection;
+    int error = ew_mat44_perspective(&projection, (ew_q16_16)focal_x, camera->focal, camera->near_z);
+    if (error) return error;
+
+    int32_t drawn = 0;
+    for (uint32_t i = 0; i < scene->section[EW_SECTION_NODE].count; i++) {
+        ew_scene_node node;
+        ew_scene_get_node(scene, i, &node);
+        if (!node.primitive_count) continue;
+        ew_mat34 node_view;
+        error = ew_mat34_mul(&node_view, &camera->view, &world[i]);
+        if (error) return error;
+        for (uint16_t k = 0; k < node.primitive_count; k++) {
+            int32_t result = draw_primitive(scene, (uint32_t)node.first_primitive + k, &projection,
+                                            &node_view, viewport, geometry, scratch);
+            if (result < 0) return result;
+            drawn += result;
+        }
+    }
+    return drawn;
+}
