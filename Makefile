@@ -24,17 +24,16 @@ WARN := -Wall -Wextra -Wconversion -Wcast-align -Wshadow
 OPTIMISE_release  := -O2
 OPTIMISE_debug    := -O0 -g
 OPTIMISE_sanitize := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
-OPTIMISE_trace    := -O2 -DEW_TRACE=1
 OPTIMISE := $(OPTIMISE_$(MODE))
 ifeq ($(strip $(OPTIMISE)),)
-$(error MODE is release, debug, sanitize or trace, not '$(MODE)')
+$(error MODE is release, debug or sanitize, not '$(MODE)')
 endif
 # Host programs check what callers promise; the library that is shipped does not.
 ASSERT := $(if $(filter sanitize debug,$(MODE)),-include assert.h '-DEW_ASSERT=assert')
 
 CORE_CFLAGS := -std=c99 -pedantic -ffreestanding $(WARN) $(OPTIMISE) $(EW_CONFIG) $(ASSERT) -Iinclude
 HOST_CFLAGS := -std=gnu11 $(WARN) $(OPTIMISE) $(EW_CONFIG) -Iinclude -I.
-HOST_CXXFLAGS := -std=c++17 -Wall -Wextra $(filter-out -DEW_TRACE=1,$(OPTIMISE)) -Iinclude -I.
+HOST_CXXFLAGS := -std=c++17 -Wall -Wextra $(OPTIMISE) -Iinclude -I.
 DEPFLAGS = -MMD -MP
 
 LIB := $(B)/libedgewalk.a
@@ -78,7 +77,7 @@ clean:  ## remove everything that was made
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z][a-z-]*:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
-	@echo "  MODE=release|debug|sanitize|trace   SETUP=0 (only say what is missing)   PREFIX=$(PREFIX)"
+	@echo "  MODE=release|debug|sanitize   SETUP=0 (only say what is missing)   PREFIX=$(PREFIX)"
 
 .PHONY: all programs install clean help
 .DELETE_ON_ERROR:

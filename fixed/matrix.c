@@ -162,11 +162,12 @@ int ew_mat34_from_trs(ew_mat34 *out, const int32_t t[3], int16_t t_exponent, con
     return EW_OK;
 }
 
-int ew_mat44_perspective(ew_mat44 *out, ew_q16_16 focal_x, ew_q16_16 focal_y, ew_block near_z)
+int ew_mat44_perspective(ew_mat44 *out, const ew_projection *p)
 {
-    if (focal_x <= 0 || focal_y <= 0 || near_z.m <= 0) return EW_ERR_ARGUMENT;
-    ew_row_from_q16_16(&out->row[0], focal_x, 0, 0, 0);
-    ew_row_from_q16_16(&out->row[1], 0, focal_y, 0, 0);
+    ew_block near_z = p->near_z;
+    if (p->focal_x <= 0 || p->focal_y <= 0 || near_z.m <= 0) return EW_ERR_ARGUMENT;
+    ew_row_from_q16_16(&out->row[0], p->focal_x, 0, 0, 0);
+    ew_row_from_q16_16(&out->row[1], 0, p->focal_y, 0, 0);
     ew_row_from_q16_16(&out->row[3], 0, 0, -65536, 0);
     /* -1 and -2n in one row: as a sum of units 2^(top - 60) */
     int32_t near_e = near_z.e + 1, top = near_e > 0 ? near_e : 0;

@@ -1,0 +1,71 @@
+# Tests: cmocka groups (unit/test_*.c), Python's unittest (cli/test_*.py), and the accuracy
+# program, which links the core built once more with EW_TRACE = 1.
+
+# ---- the core with its trace, and what judges it ----
+TRACE_OBJS := $(CORE_SRCS:%.c=$(B)/trace/%.o)
+$(TRACE_OBJS): $(B)/trace/%.o: %.c
+	@mkdir -p $(@D)
+	$(CC) $(CORE_CFLAGS) $(CFLAGS) -DEW_TRACE=1 $(DEPFLAGS) -c -o $@ $<
+
+REFEREE_OBJS := $(addprefix $(B)/host_tests/,reference/referee.o reference/scenes.o accuracy/measure.o)
+$(B)/host_tests/%.o: HOST_INC = -DEW_TRACE=1
+
+$(BIN)/ew-accuracy: $(addprefix $(B)/host_tests/accuracy/,accuracy.o scene_measure.o) $(REFEREE_OBJS) \
+  $(COMMON_OBJS) $(TRACE_OBJS)
+	@mkdir -p $(@D)
+	$(CC) $(HOST_CFLAGS) $(LDFLAGS) -o $@ $^ -lpng -lz -lm
+
+# ---- unit tests ----
+T := $(B)/tests
+UNIT := $(B)/host_tests/unit
+UNIT_TESTS := $(addprefix $(T)/test_,fixed recip raster geometry accuracy scene display display_faults stream readme)
+
+LINK_TEST = @mkdir -p $(@D); echo "LINK $@"; $(CC) $(HOST_CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka -lm
+$(addprefix $(T)/test_,fixed recip scene display display_faults): $(T)/test_%: $(UNIT)/test_%.o $(UNIT)/unit.o $(LIB)
+	$(LINK_TEST)
+$(T)/test_raster: $(UNIT)/test_raster.o $(UNIT)/unit.o $(B)/host_tests/reference/referee.o $(LIB)
+	$(LINK_TEST)
+$(T)/test_geometry $(T)/test_accuracy: $(T)/test_%: $(UNIT)/test_%.o $(UNIT)/unit.o $(REFEREE_OBJS) $(TRACE_OBJS)
+	$(LINK_TEST)
+$(T)/test_stream: $(UNIT)/test_stream.o $(UNIT)/unit.o \
+  $(addprefix $(B)/tools/stream/,link.o panel_lines.o sender.o sim.o sim_panel.o) $(LIB)
+	$(LINK_TEST) -pthread
+# The program that README.md shows, cut out of it and compiled as it stands there.
+$(T)/readme_example.c: README.md
+	@mkdir -p $(@D)
+	awk '/^```c$$/ { on = 1; next } /^```$$/ { on = 0 } on' $< > $@
+$(T)/readme_example.o: $(T)/readme_example.c
+	$(CC) -std=c99 -pedantic -Wall -Wextra -Dmain=readme_main -Iinclude -c -o $@ $<
+$(T)/test_readme: $(UNIT)/test_readme.o $(T)/readme_example.o $(UNIT)/unit.o $(B)/host_tests/reference/referee.o $(LIB)
+	$(LINK_TEST)
+
+# ---- configurations: each needs a core of its own ----
+# recip-N: the reciprocals with a table of 2^N entries; sub-N: coverage at N subpixel bits.
+CONFIG_TESTS := $(foreach n,4 5 6 7 9,$(T)/test_recip-$(n)) $(foreach n,4 6,$(T)/test_raster-$(n))
+$(T)/test_recip-%: host_tests/unit/test_recip.c host_tests/unit/unit.c fixed/recip.c fixed/recip_table.inc
+	@mkdir -p $(@D); echo "CC $@"
+	@$(CC) $(HOST_CFLAGS) -DEW_RECIP_BITS=$* -o $@ $(filter %.c,$^) -lcmocka -lm
+$(T)/test_raster-%: host_tests/unit/test_raster.c host_tests/unit/unit.c host_tests/reference/referee.c \
+  $(filter fixed/% src/raster/%,$(CORE_SRCS))
+	@mkdir -p $(@D); echo "CC $@"
+	@$(CC) $(HOST_CFLAGS) -DEW_SUBPIXEL_BITS=$* -o $@ $(filter %.c,$^) -lcmocka -lm
+
+# ---- goals ----
+accuracy: $(T)/test_accuracy  ## the referee's figures for the standard scenes, rung by rung
+	@EW_PRINT=1 $<
+.PHONY: accuracy
+
+CLI_TESTS := $(sort $(wildcard host_tests/cli/test_*.py))
+RUN := $(PYTHON) host_tests/run.py
+
+# Everything as it is shipped, then the C tests once more under the sanitizers.
+test:  ## set up what is missing and run every host test
+	@SETUP=$(SETUP) tools/setup/setup.sh test
+	@$(MAKE) --no-print-directory test-programs
+	@$(MAKE) --no-print-directory MODE=sanitize sanitize-programs
+	@EW_BIN=$(BIN) $(RUN) $(UNIT_TESTS) $(CONFIG_TESTS) $(CLI_TESTS) \
+	  $(patsubst build/$(MODE)/%,build/sanitize/%,$(SANITIZE_TESTS))
+SANITIZE_TESTS := $(filter-out $(T)/test_recip $(T)/test_readme,$(UNIT_TESTS))
+test-programs: programs $(BIN)/ew-accuracy $(UNIT_TESTS) $(CONFIG_TESTS) check-tables
+sanitize-programs: $(SANITIZE_TESTS)
+.PHONY: test test-programs sanitize-programs

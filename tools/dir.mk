@@ -1,0 +1,15 @@
+# Programs. Packages are asked for in recipes only, so that `make` alone needs none.
+COMMON_OBJS := $(addprefix $(B)/tools/common/,image.o options.o player.o)
+
+PROGRAMS += $(BIN)/ew-render
+$(BIN)/ew-render: $(B)/tools/render/render.o $(COMMON_OBJS) $(LIB)
+	@mkdir -p $(@D)
+	$(CC) $(HOST_CFLAGS) $(LDFLAGS) -o $@ $^ -lpng -lz -lm
+
+include tools/bake/dir.mk
+include tools/stream/dir.mk
+include tools/lab/dir.mk
+
+setup-demo setup-test setup-lab: setup-%:  ## install what `make demo`, test or lab-test needs
+	@SETUP=$(SETUP) tools/setup/setup.sh $*
+.PHONY: setup-demo setup-test setup-lab

@@ -41,7 +41,7 @@ static struct {
     measures m;
     double depth_sum, u_sum, v_sum;
     logged_triangle triangle[16];
-    int triangles, rung;
+    int triangles, rung, active;
     logged_fragment *fragment;
     size_t fragments, fragment_room;
 } now;
@@ -49,6 +49,7 @@ static struct {
 void ew_trace_triangle(const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *c,
                        int rung)
 {
+    if (!now.active) return;
     if (now.triangles == 16) abort();
     logged_triangle *t = &now.triangle[now.triangles++];
     t->corner[0] = *a, t->corner[1] = *b, t->corner[2] = *c;
@@ -57,6 +58,7 @@ void ew_trace_triangle(const ew_raster_vertex *a, const ew_raster_vertex *b, con
 
 void ew_trace_fragment(uint16_t x, uint16_t y, uint16_t depth, ew_q20_12 u, ew_q20_12 v)
 {
+    if (!now.active) return;
     if (now.fragments == now.fragment_room) {
         now.fragment_room = now.fragment_room ? 2 * now.fragment_room : 1 << 16;
         now.fragment = realloc(now.fragment, now.fragment_room * sizeof *now.fragment);
@@ -75,6 +77,7 @@ void measure_begin(const ew_target *target, const ref_camera *camera, uint16_t b
     now.target = *target;
     now.camera = *camera;
     now.background = background;
+    now.active = 1;
     now.pixels = calloc(pixel_count(), sizeof *now.pixels);
     now.exact = calloc(pixel_count(), 1);
     now.drawn = calloc(pixel_count(), 1);
@@ -168,6 +171,10 @@ static void judge_fragment(const logged_fragment *f, const ref_triangle *truth)
     if (depth >= 1 && depth < 65535) {
         double e = fabs(f->depth + 0.5 - depth);
         now.m.depth_max = fmax(now.m.depth_max, e);
+        /* 1/z is linear: over a disc it goes up and down by its gradient times the radius */
+        double gx = ref_depth(truth, f->x + 1.5, f->y + 0.5) - depth;
+        double gy = ref_depth(truth, f->x + 0.5, f->y + 1.5) - depth;
+        now.m.depth_off = fmax(now.m.depth_off, e - hypot(gx, gy) / 256);
         now.depth_sum += e * e;
     } else {
         now.m.saturated++;
@@ -181,11 +188,26 @@ static void judge_fragment(const logged_fragment *f, const ref_triangle *truth)
     now.v_sum += ev * ev;
 }
 
+/* Pixels that the unsnapped triangle covers. A triangle that crosses the near plane may
+ * reach anywhere, so then all pixels are asked. */
 static void mark_truth(const ref_triangle *truth, int double_sided)
 {
+    double x0 = HUGE_VAL, x1 = -HUGE_VAL, y0 = HUGE_VAL, y1 = -HUGE_VAL;
+    int in_front = 0;
     if (!double_sided && truth->determinant <= 0) return;
-    for (int y = 0; y < now.target.height; y++) {
-        for (int x = 0; x < now.target.width; x++) {
+    for (int i = 0; i < 3; i++) {
+        const ref_corner *c = &truth->corner[i];
+        if (c->z < truth->near_z) continue;
+        in_front++;
+        double x = now.camera.left + now.camera.width / 2 * (1 + now.camera.fx * c->x / c->z);
+        double y = now.camera.top + now.camera.height / 2 * (1 - now.camera.fy * c->y / c->z);
+        x0 = fmin(x0, x), x1 = fmax(x1, x), y0 = fmin(y0, y), y1 = fmax(y1, y);
+    }
+    if (in_front == 0) return;
+    if (in_front < 3) x0 = y0 = 0, x1 = now.target.width, y1 = now.target.height;
+    int last_x = (int)fmin(now.target.width, x1 + 1), last_y = (int)fmin(now.target.height, y1 + 1);
+    for (int y = (int)fmax(0, y0 - 1); y < last_y; y++) {
+        for (int x = (int)fmax(0, x0 - 1); x < last_x; x++) {
             if (ref_sample_at(truth, x + 0.5, y + 0.5).inside) now.pixels[index_of(x, y)].truth = 1;
         }
     }
@@ -211,24 +233,6 @@ static void judge_triangle(const ew_raster *raster, const ref_triangle *truth)
     }
 }
 
-/* Whether the triangle may touch the picture at all; spares the truth's full scan. */
-static int may_touch(const ref_triangle *t)
-{
-    double x0 = HUGE_VAL, x1 = -HUGE_VAL, y0 = HUGE_VAL, y1 = -HUGE_VAL;
-    int in_front = 0;
-    for (int i = 0; i < 3; i++) {
-        const ref_corner *c = &t->corner[i];
-        if (c->z < t->near_z) continue;
-        in_front++;
-        double x = now.camera.left + now.camera.width / 2 * (1 + now.camera.fx * c->x / c->z);
-        double y = now.camera.top + now.camera.height / 2 * (1 - now.camera.fy * c->y / c->z);
-        x0 = fmin(x0, x), x1 = fmax(x1, x), y0 = fmin(y0, y), y1 = fmax(y1, y);
-    }
-    if (in_front == 0) return 0;
-    if (in_front < 3) return 1;
-    return x1 >= 0 && x0 <= now.target.width && y1 >= 0 && y0 <= now.target.height;
-}
-
 int measure_mesh(ew_geometry *geometry, const double mv[3][4], const ew_vertex16 *vertices,
                  const ew_screen_vertex *screen, const uint16_t *indices, uint32_t index_count,
                  uint8_t uv_fraction_bits)
@@ -252,7 +256,7 @@ int measure_mesh(ew_geometry *geometry, const double mv[3][4], const ew_vertex16
             continue;
         }
         if (now.triangles || now.fragments) judge_triangle(geometry->raster, &truth);
-        if (may_touch(&truth)) mark_truth(&truth, geometry->raster->material.flags & EW_DOUBLE_SIDED);
+        mark_truth(&truth, geometry->raster->material.flags & EW_DOUBLE_SIDED);
     }
     return 0;
 }

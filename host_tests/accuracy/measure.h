@@ -19,6 +19,8 @@ typedef struct measures {
                               snapped units; the snap adds at most 0.5                          */
     double snapped_max;    /* the same after the snap: the contract says 0.75                   */
     double depth_max, depth_rms; /* |stored + 1/2 - 65536 near/z|, where 1 <= 65536 near/z < 65535 */
+    double depth_off;      /* the same against the exact depths over the disc of 1/256 px around the
+                              pixel's centre: what is promised for triangles of any steepness   */
     long saturated;        /* fragments left out of depth_*                                    */
     double u_max, u_rms, v_max, v_rms; /* texels, fragments of textured triangles               */
     long textured;         /* how many those are                                              */

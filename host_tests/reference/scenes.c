@@ -48,7 +48,7 @@ static void add_sphere(standard_scene *s)
             double theta = pi * j / N, phi = 2 * pi * i / N;
             double x = sin(theta) * cos(phi), y = cos(theta), z = sin(theta) * sin(phi);
             double yt = y * cos(tilt) - z * sin(tilt), zt = y * sin(tilt) + z * cos(tilt);
-            add_vertex(s, UNIT * x, UNIT * yt, lrint(UNIT * zt) + 973, 1 + 253.0 * i / N, 1 + 253.0 * j / N);
+            add_vertex(s, UNIT * x, UNIT * yt, rint(UNIT * zt) + 973, 1 + 253.0 * i / N, 1 + 253.0 * j / N);
         }
     }
     for (int j = 0; j < N; j++) {

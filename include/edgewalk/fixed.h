@@ -196,14 +196,21 @@ int ew_mat44_mul(ew_mat44 *out, const ew_mat44 *a, const ew_mat44 *b);
 int ew_mat34_from_trs(ew_mat34 *out, const int32_t t[3], int16_t t_exponent, const ew_quat *r,
                       const int32_t s[3], int16_t s_exponent);
 
-/* The perspective matrix with an infinite far plane:
+/* A perspective with an infinite far plane, for a camera that looks down -z. */
+typedef struct ew_projection {
+    ew_q16_16 focal_x, focal_y; /* 2f/W and 2f/H: 1 / tan of half the field of view across and
+                                   up; above 0                                           */
+    ew_block near_z;            /* distance of the near plane, above 0                    */
+} ew_projection;
+
+/* Its matrix:
  *   focal_x 0 0 0 / 0 focal_y 0 0 / 0 0 -1 -2n / 0 0 -1 0
- * for a camera that looks down -z. focal_x = 2f/W and focal_y = 2f/H: 1 / tan of half the
- * field of view across and up. z_ndc = 1 - 2n/z for a point at distance z: -1 at the near
- * plane, 1 at infinity, and w' = z.
+ * z_ndc = 1 - 2n/z for a point at distance z: -1 at the near plane, 1 at infinity, and
+ * w' = z. In the third row a near distance far below 1 shares the exponent of the -1; the
+ * geometry layer takes it from the projection itself.
  * Source: lecture 6 notes, "Perspective Projection and Texture Mapping", with the focal
  * factors and the sign of the last row corrected (docs/conventions.md).
- * focal_x, focal_y > 0 and n > 0, else EW_ERR_ARGUMENT. */
-int ew_mat44_perspective(ew_mat44 *out, ew_q16_16 focal_x, ew_q16_16 focal_y, ew_block near_z);
+ * Returns EW_OK or EW_ERR_ARGUMENT. */
+int ew_mat44_perspective(ew_mat44 *out, const ew_projection *projection);
 
 #endif

@@ -1,14 +1,9 @@
 /* Vertices to the screen. */
 #include "project.h"
 
-int ew_transform_set(ew_transform *transform, const ew_mat44 *projection, const ew_mat34 *model_view,
+int ew_transform_set(ew_transform *transform, const ew_projection *projection, const ew_mat34 *model_view,
                      const ew_viewport *viewport)
 {
-    const ew_row *w = &projection->row[3], *z = &projection->row[2];
-    /* w' = -z, z' = w' - 2n: nothing else has one near distance for all vertices */
-    if (w->m[0] || w->m[1] || w->m[3] || w->m[2] >= 0 || z->m[0] || z->m[1] || z->m[3] >= 0) {
-        return EW_ERR_ARGUMENT;
-    }
     if (viewport->width < 1 || viewport->height < 1 || viewport->width > 8192 || viewport->height > 8192 ||
         viewport->x < -8192 || viewport->x > 8191 || viewport->y < -8192 || viewport->y > 8191) {
         return EW_ERR_ARGUMENT;
@@ -22,16 +17,16 @@ int ew_transform_set(ew_transform *transform, const ew_mat44 *projection, const 
     ew_row_from_q16_16(&screen.row[1], 0, -half_h, 0, half_h + (int32_t)viewport->y * 65536);
     ew_row_from_q16_16(&screen.row[2], 0, 0, 65536, 0);
     ew_row_from_q16_16(&screen.row[3], 0, 0, 0, 65536);
-    int error = ew_mat44_mul(&all, &screen, projection);
-    if (error) return error;
-    error = ew_mat44_mul_mat34(&all, &all, model_view);
+    int error = ew_mat44_perspective(&all, projection);
+    if (!error) error = ew_mat44_mul(&all, &screen, &all);
+    if (!error) error = ew_mat44_mul_mat34(&all, &all, model_view);
     if (error) return error;
 
-    /* n = -m/2 2^(z.e - 30) in units of 2^(w.e - 45). -z.m[3] <= 2^30, so up to 2^32 more
-     * keeps it inside 62 bits; a model that small beside the near distance is all clipped. */
-    int32_t up = z->e - 1 + 15 - all.row[3].e;
-    int64_t near_w = -(int64_t)z->m[3];
-    if (up > 32) near_w = (int64_t)1 << 62;
+    /* n = m 2^(e - 30) in units of 2^(w.e - 45). m < 2^31, so up to 2^31 more keeps it
+     * inside 62 bits; a model that small beside the near distance is all clipped. */
+    int32_t up = projection->near_z.e + 15 - all.row[3].e;
+    int64_t near_w = projection->near_z.m;
+    if (up > 31) near_w = (int64_t)1 << 62;
     else if (up >= 0) near_w *= (int64_t)1 << up;
     else near_w = up < -62 ? 0 : EW_ASR(near_w, -up);
     if (near_w < (int64_t)1 << 16) return EW_ERR_RANGE; /* 1/z would keep fewer than 16 bits */

@@ -2,8 +2,6 @@
  * ew_scene_open; the functions after it trust the bytes. */
 #include "edgewalk/scene.h"
 
-#include <string.h>
-
 /* Vertices, indices and texels are used where they lie, as the machine's own numbers. */
 #if defined(__BYTE_ORDER__) && __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
 #error "baked scenes are little-endian and used in place"
@@ -241,8 +239,8 @@ int ew_scene_open(ew_scene *scene, const void *data, size_t size)
     if (stated < size || stated % 4 != 0 || u16_at(bytes + 6) != HEADER_BYTES) return EW_ERR_CORRUPT;
     if (checksum(bytes, stated) != u32_at(bytes + 12)) return EW_ERR_CHECKSUM;
 
-    ew_scene s;
-    memset(&s, 0, sizeof s);
+    static const ew_scene none;
+    ew_scene s = none;
     int error = read_directory(&s, bytes, stated);
     if (error) return error;
     if (!camera_ok(record(&s, EW_SECTION_CAMR, 0)) || !row_ok(record(&s, EW_SECTION_BOUN, 0)) ||
@@ -330,17 +328,18 @@ void ew_scene_get_material(const ew_scene *scene, uint32_t i, ew_material *mater
 
 /* ---- movement ---- */
 
-/* a + (b - a) f / 2^16, 0 <= f < 2^16. */
+/* a + (b - a) f / 2^31, 0 <= f < 2^31, |a|, |b| <= 2^30: the product is below 2^62. */
 static int32_t between(int32_t a, int32_t b, uint32_t f)
 {
-    return (int32_t)(a + EW_ASR(((int64_t)b - a) * (int64_t)f, 16));
+    return (int32_t)(a + EW_ASR(((int64_t)b - a) * (int64_t)f, 31));
 }
 
 static int track_matrix(const ew_scene *scene, uint32_t track, uint32_t time_ms, ew_mat34 *out)
 {
     const uint8_t *p = record(scene, EW_SECTION_TRAK, track);
     uint32_t first = u32_at(p), last = (uint32_t)u16_at(p + 4) - 1u, interval = u16_at(p + 6);
-    uint32_t k = time_ms / interval, f = (time_ms % interval << 16) / interval;
+    uint32_t k = time_ms / interval, rest;
+    uint32_t f = ew_udiv64_32((uint64_t)(time_ms % interval) << 31, interval, &rest);
     if (k >= last) k = last, f = 0;
     const uint8_t *a = record(scene, EW_SECTION_KEYS, first + k);
     const uint8_t *b = f ? a + rules[EW_SECTION_KEYS].record_bytes : a;
@@ -379,7 +378,7 @@ int ew_scene_pose(const ew_scene *scene, uint32_t time_ms, ew_mat34 *world)
 
 /* ---- drawing ---- */
 
-static int32_t draw_primitive(const ew_scene *scene, uint32_t number, const ew_mat44 *projection,
+static int32_t draw_primitive(const ew_scene *scene, uint32_t number, const ew_projection *projection,
                               const ew_mat34 *node_view, const ew_viewport *viewport, ew_geometry *geometry,
                               ew_screen_vertex *scratch)
 {
@@ -408,9 +407,7 @@ int32_t ew_scene_draw(const ew_scene *scene, const ew_scene_camera *camera, cons
     if (across >> 32 >= viewport->width) return EW_ERR_ARGUMENT;
     uint32_t focal_x = ew_udiv64_32(across, viewport->width, &rest);
     if (focal_x > INT32_MAX) return EW_ERR_ARGUMENT;
-    ew_mat44 projection;
-    int error = ew_mat44_perspective(&projection, (ew_q16_16)focal_x, camera->focal, camera->near_z);
-    if (error) return error;
+    const ew_projection projection = { (ew_q16_16)focal_x, camera->focal, camera->near_z };
 
     int32_t drawn = 0;
     for (uint32_t i = 0; i < scene->section[EW_SECTION_NODE].count; i++) {
@@ -418,7 +415,7 @@ int32_t ew_scene_draw(const ew_scene *scene, const ew_scene_camera *camera, cons
         ew_scene_get_node(scene, i, &node);
         if (!node.primitive_count) continue;
         ew_mat34 node_view;
-        error = ew_mat34_mul(&node_view, &camera->view, &world[i]);
+        int error = ew_mat34_mul(&node_view, &camera->view, &world[i]);
         if (error) return error;
         for (uint16_t k = 0; k < node.primitive_count; k++) {
             int32_t result = draw_primitive(scene, (uint32_t)node.first_primitive + k, &projection,

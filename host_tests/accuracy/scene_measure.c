@@ -1,0 +1,141 @@
+#include "scene_measure.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- baked numbers in double ---- */
+
+typedef struct matrix {
+    double m[3][4];
+} matrix;
+
+static matrix exact(const ew_mat34 *fixed)
+{
+    matrix r;
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 4; j++) r.m[i][j] = ldexp(fixed->row[i].m[j], fixed->row[i].e - 30);
+    }
+    return r;
+}
+
+static matrix times(const matrix *a, const matrix *b)
+{
+    matrix r;
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 4; j++) {
+            r.m[i][j] = j == 3 ? a->m[i][3] : 0;
+            for (int k = 0; k < 3; k++) r.m[i][j] += a->m[i][k] * b->m[k][j];
+        }
+    }
+    return r;
+}
+
+static double number(const uint8_t *p, int bytes)
+{
+    uint32_t u = 0;
+    for (int i = 0; i < bytes; i++) u |= (uint32_t)p[i] << 8 * i;
+    return bytes == 2 ? (int16_t)u : (int32_t)u;
+}
+
+/* docs/scene-format.md, "movement". */
+static matrix track_matrix(const ew_scene *scene, int track, uint32_t time_ms)
+{
+    const uint8_t *t = scene->section[EW_SECTION_TRAK].records + 12 * track;
+    double at = time_ms / (double)(uint16_t)number(t + 6, 2), last = (uint16_t)number(t + 4, 2) - 1.0;
+    if (at > last) at = last;
+    double k = floor(at), f = at - k;
+    const uint8_t *a = scene->section[EW_SECTION_KEYS].records + 32 * ((size_t)number(t, 4) + (size_t)k);
+    const uint8_t *b = f > 0 ? a + 32 : a;
+    double v[10];
+    for (int i = 0; i < 10; i++) {
+        int bytes = i >= 3 && i < 7 ? 2 : 4, offset = i < 3 ? 4 * i : i < 7 ? 12 + 2 * (i - 3) : 20 + 4 * (i - 7);
+        v[i] = number(a + offset, bytes) * (1 - f) + number(b + offset, bytes) * f;
+    }
+    double length = sqrt(v[3] * v[3] + v[4] * v[4] + v[5] * v[5] + v[6] * v[6]);
+    double x = v[3] / length, y = v[4] / length, z = v[5] / length, w = v[6] / length;
+    double r[3][3] = { { 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y) },
+                       { 2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x) },
+                       { 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y) } };
+    matrix m;
+    for (int i = 0; i < 3; i++) {
+        m.m[i][3] = ldexp(v[i], (int)number(t + 8, 2) - 30);
+        for (int j = 0; j < 3; j++) m.m[i][j] = r[i][j] * ldexp(v[7 + j], (int)number(t + 10, 2) - 30);
+    }
+    return m;
+}
+
+static void pose(const ew_scene *scene, uint32_t time_ms, matrix *world)
+{
+    for (uint32_t i = 0; i < scene->section[EW_SECTION_NODE].count; i++) {
+        ew_scene_node node;
+        ew_scene_get_node(scene, i, &node);
+        matrix local = node.track >= 0 ? track_matrix(scene, node.track, time_ms) : exact(&node.local);
+        world[i] = node.parent >= 0 ? times(&world[node.parent], &local) : local;
+    }
+}
+
+/* ---- one picture ---- */
+
+static int measure_primitive(const ew_scene *scene, uint32_t number_of, const ew_projection *projection,
+                             const ew_mat34 *node_view, const matrix *node_view_exact, const ew_viewport *viewport,
+                             ew_geometry *geometry, ew_screen_vertex *scratch, int tolerance, ew_rung rung)
+{
+    ew_scene_primitive p;
+    ew_material material;
+    ew_texture texture;
+    ew_mat34 model_view;
+    ew_scene_get_primitive(scene, number_of, &p);
+    ew_scene_get_material(scene, p.material, &material, &texture);
+    if (tolerance >= 0) material.tolerance = (uint16_t)tolerance;
+    if (rung != EW_RUNG_AUTO && material.texture) material.rung = (uint8_t)rung;
+    int error = ew_mat34_mul(&model_view, node_view, &p.dequantise);
+    if (!error) error = ew_raster_set_material(geometry->raster, &material);
+    if (!error) error = ew_transform_set(&geometry->transform, projection, &model_view, viewport);
+    if (error) return error;
+    ew_transform_vertices(&geometry->transform, p.vertices, p.vertex_count, scratch);
+    matrix box = exact(&p.dequantise), mv = times(node_view_exact, &box);
+    return measure_mesh(geometry, mv.m, p.vertices, scratch, p.indices, p.index_count, p.uv_fraction_bits);
+}
+
+int measure_scene(const ew_scene *scene, const ew_scene_camera *camera, uint32_t time_ms, const ew_target *target,
+                  uint16_t background, int tolerance, ew_rung rung, measures *result)
+{
+    uint32_t nodes = scene->section[EW_SECTION_NODE].count;
+    ew_mat34 *world = calloc(nodes, sizeof *world), node_view;
+    matrix *world_exact = calloc(nodes, sizeof *world_exact), view = exact(&camera->view);
+    ew_screen_vertex *scratch = calloc(scene->largest_primitive, sizeof *scratch);
+    ew_raster raster;
+    ew_geometry geometry;
+    if (!world || !world_exact || !scratch) abort();
+
+    /* the same numbers for both: the focal ratios as the core rounds them */
+    int32_t focal_x = (int32_t)(((int64_t)camera->focal * target->height + target->width / 2) / target->width);
+    const ref_camera eye = { focal_x / 65536.0, camera->focal / 65536.0,
+                             ldexp(camera->near_z.m, camera->near_z.e - 30), 0, 0, target->width, target->height };
+    const ew_viewport viewport = { 0, 0, target->width, target->height };
+    const ew_projection projection = { focal_x, camera->focal, camera->near_z };
+    int error = ew_raster_init(&raster, target);
+    if (!error) error = ew_scene_pose(scene, time_ms, world);
+    if (!error) {
+        ew_raster_clear(&raster, background);
+        ew_geometry_init(&geometry, &raster);
+        pose(scene, time_ms, world_exact);
+        measure_begin(target, &eye, background);
+        for (uint32_t i = 0; i < nodes && !error; i++) {
+            ew_scene_node node;
+            ew_scene_get_node(scene, i, &node);
+            matrix exact_view = times(&view, &world_exact[i]);
+            error = ew_mat34_mul(&node_view, &camera->view, &world[i]);
+            for (uint32_t k = 0; k < node.primitive_count && !error; k++) {
+                error = measure_primitive(scene, node.first_primitive + k, &projection, &node_view, &exact_view,
+                                          &viewport, &geometry, scratch, tolerance, rung);
+            }
+        }
+        measure_end(result, 0.125);
+    }
+    free(world);
+    free(world_exact);
+    free(scratch);
+    return error;
+}

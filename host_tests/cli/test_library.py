@@ -1,0 +1,101 @@
+"""The freestanding library: what it asks of its surroundings, and what it keeps."""
+import os
+import re
+import shutil
+import subprocess
+import unittest
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+LIBRARY = os.path.join(os.path.dirname(os.environ.get("EW_BIN", "build/release/bin")), "libedgewalk.a")
+CROSS = [("arm-none-eabi-", ["-mcpu=cortex-m0plus", "-mthumb"], r"__(aeabi|gnu_thumb1)_\w+|__clzsi2"),
+         ("arm-none-eabi-", ["-mcpu=cortex-m3", "-mthumb"], r"__aeabi_\w+|__clzsi2"),
+         ("riscv64-unknown-elf-", ["-march=rv32imc", "-mabi=ilp32"], r"__\w+[sd]i\d")]
+
+
+def symbols(archive, nm="nm"):
+    """(kind, name) of all symbols, and the set of those that no member defines."""
+    text = subprocess.run([nm, archive], check=True, stdout=subprocess.PIPE, text=True).stdout
+    found = [line.split()[-2:] for line in text.splitlines() if re.search(r" [A-Za-z] \w+$", line)]
+    defined = {name for kind, name in found if kind != "U"}
+    return found, {name for kind, name in found if kind == "U"} - defined
+
+
+def sources(*folders):
+    for folder in folders:
+        for path, _, names in os.walk(os.path.join(ROOT, folder)):
+            for name in sorted(names):
+                if name.endswith((".c", ".h")):
+                    yield os.path.join(path, name)
+
+
+class Library(unittest.TestCase):
+    def test_needs_only_memcpy_and_memset(self):
+        self.assertLessEqual(symbols(os.path.join(ROOT, LIBRARY))[1], {"memcpy", "memset"})
+
+    def test_has_no_mutable_globals(self):
+        kinds = {(kind, name) for kind, name in symbols(os.path.join(ROOT, LIBRARY))[0] if kind in "dDbBcCsS"}
+        self.assertEqual(kinds, set())
+
+    def test_external_names_have_the_prefix(self):
+        names = {name for kind, name in symbols(os.path.join(ROOT, LIBRARY))[0] if kind in "TRDB"}
+        self.assertEqual({name for name in names if not name.startswith("ew_")}, set())
+
+    def test_names_no_float_and_no_host_header(self):
+        allowed = {"stddef.h", "stdint.h", "limits.h"}  # those that a freestanding compiler has
+        for path in sources("fixed", "src", "include"):
+            with open(path, encoding="utf-8") as source:
+                text = re.sub(r"/\*.*?\*/", "", source.read(), flags=re.S)
+            with self.subTest(path=os.path.relpath(path, ROOT)):
+                self.assertIsNone(re.search(r"\b(float|double|malloc|free|printf)\b", text))
+                self.assertLessEqual(set(re.findall(r"#include <([^>]+)>", text)), allowed)
+
+    def test_arrows_point_one_way(self):
+        """A file includes public headers of its own layer and those below it only."""
+        below = {"fixed": {"config", "error", "fixed"}}
+        below["src/raster"] = below["fixed"] | {"raster"}
+        below["src/geometry"] = below["src/raster"] | {"geometry"}
+        below["src/scene"] = below["src/geometry"] | {"scene"}
+        below["src/display"] = {"config", "error", "display"}
+        for folder, allowed in below.items():
+            for path in sources(folder):
+                with open(path, encoding="utf-8") as source:
+                    included = re.findall(r'#include "([^"]+)"', source.read())
+                with self.subTest(path=os.path.relpath(path, ROOT)):
+                    for name in included:
+                        public = re.fullmatch(r"edgewalk/(\w+)\.h", name)
+                        if public:
+                            self.assertIn(public.group(1), allowed)
+                        else:
+                            self.assertNotIn("/", name)  # private headers lie beside their sources
+
+    def test_cross_builds_need_only_compiler_helpers(self):
+        built = 0
+        for prefix, flags, helpers in CROSS:
+            if not shutil.which(prefix + "gcc"):
+                continue
+            for level in ("-O0", "-Os", "-O2"):
+                folder = os.path.join(ROOT, os.path.dirname(LIBRARY), "cross", "".join(flags).replace("=", "-") + level)
+                os.makedirs(folder, exist_ok=True)
+                with self.subTest(flags=flags, level=level):
+                    objects = []
+                    for path in sources("fixed", "src"):
+                        if path.endswith(".h"):
+                            continue
+                        objects.append(os.path.join(folder, os.path.relpath(path, ROOT).replace("/", "_") + ".o"))
+                        subprocess.run([prefix + "gcc", *flags, level, "-std=c99", "-pedantic", "-ffreestanding", "-Wall",
+                                        "-Wextra", "-Wconversion", "-Werror", "-Iinclude", "-c", path, "-o", objects[-1]],
+                                       check=True, cwd=ROOT)
+                    archive = os.path.join(folder, "all.a")
+                    if os.path.exists(archive):
+                        os.remove(archive)
+                    subprocess.run([prefix + "ar", "rcs", archive, *objects], check=True)
+                    missing = symbols(archive, prefix + "nm")[1]
+                    self.assertEqual({n for n in missing if n not in ("memcpy", "memset")
+                                      and not re.fullmatch(helpers, n)}, set())
+                    built += 1
+        if not built:
+            self.skipTest("no cross compiler (Debian: gcc-arm-none-eabi, gcc-riscv64-unknown-elf)")
+
+
+if __name__ == "__main__":
+    unittest.main()

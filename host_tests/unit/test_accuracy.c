@@ -1,0 +1,224 @@
+/* The golden checks: the standard scenes A to E, drawn by each rung, against the referee.
+ * No stored picture of our own is asked. */
+#include "unit.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../accuracy/measure.h"
+#include "../reference/scenes.h"
+
+static uint16_t texels[256 * 256], colour[STANDARD_WIDTH * STANDARD_HEIGHT], depth[STANDARD_WIDTH * STANDARD_HEIGHT];
+static standard_scene scene;
+static ew_screen_vertex screen[33 * 33];
+
+static measures draw(char name, ew_rung rung, uint16_t tolerance)
+{
+    enum { BACKGROUND = 0x1234 };
+    const ew_target target = { colour, depth, STANDARD_WIDTH, STANDARD_HEIGHT, STANDARD_WIDTH };
+    const ew_texture texture = { texels, 8, 8 };
+    const ew_material material = { &texture, 0, tolerance, (uint8_t)rung, 0 };
+    /* focal length 160 px both ways: a square picture, of which the target shows the middle */
+    const ew_viewport viewport = { 0, -40, 320, 320 };
+    const ref_camera eye = { 1, 1, 0.25, 0, -40, 320, 320 };
+    const ew_projection projection = { 65536, 65536, { 1 << 29, -1 } };
+    ew_raster raster;
+    ew_geometry geometry;
+    ew_mat34 model_view;
+    double exact[3][4];
+
+    standard_texture(texels);
+    standard_scene_init(&scene, name);
+    standard_model_view(&model_view, exact);
+    assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
+    ew_raster_clear(&raster, BACKGROUND);
+    assert_int_equal(ew_raster_set_material(&raster, &material), EW_OK);
+    ew_geometry_init(&geometry, &raster);
+    assert_int_equal(ew_transform_set(&geometry.transform, &projection, &model_view, &viewport), EW_OK);
+    ew_transform_vertices(&geometry.transform, scene.vertices, scene.vertex_count, screen);
+    measure_begin(&target, &eye, BACKGROUND);
+    assert_int_equal(measure_mesh(&geometry, exact, scene.vertices, screen, scene.indices, scene.index_count,
+                                  scene.uv_fraction_bits), 0);
+    measures m;
+    measure_end(&m, 0.125);
+    return m;
+}
+
+/* What every picture owes, whatever its rung. Fragments: the counts of exact coverage, as
+ * published for A and B. */
+static void hold(char name, const measures *m)
+{
+    static const long fragments[STANDARD_SCENES] = { 31472, 30620, 34400, 12849, 37600 };
+    test_context("scene %c: %ld fragments, %ld wrong, %ld double, %ld overdrawn, %ld against the truth, vertices %.3f, "
+                 "depth %.3f, %ld colours", name, m->fragments, m->wrong_px, m->double_hits, m->hit_again,
+                 m->wrong_truth_px, m->snapped_max, m->depth_max, m->colour_px);
+    assert_int_equal(m->fragments, fragments[name - 'A']);
+    assert_int_equal(m->wrong_px, 0);
+    assert_int_equal(m->double_hits, 0);
+    assert_int_equal(m->hit_again, 0);
+    /* E's horizon snaps onto the centres of a row */
+    assert_true(m->wrong_truth_px <= (name == 'E' ? 200 : 0));
+    assert_true(m->snapped_max <= 0.75);
+    assert_true(m->depth_max <= 1);
+    assert_int_equal(m->colour_px, 0);
+}
+
+static void uv_limits(const measures *m, double rms, double worst)
+{
+    test_context("u rms %.4f max %.4f, v rms %.4f max %.4f", m->u_rms, m->u_max, m->v_rms, m->v_max);
+    assert_true(m->u_rms <= rms && m->v_rms <= rms);
+    assert_true(m->u_max <= worst && m->v_max <= worst);
+}
+
+static void exact_rung(void **state)
+{
+    (void)state;
+    for (char name = 'A'; name <= 'E'; name++) {
+        measures m = draw(name, EW_RUNG_EXACT, 0);
+        hold(name, &m);
+        uv_limits(&m, 0.002, 1.0 / 64);
+        assert_int_equal(m.rung[EW_RUNG_EXACT], m.fragments);
+    }
+}
+
+static void table_rung(void **state)
+{
+    (void)state;
+    for (char name = 'A'; name <= 'E'; name++) {
+        measures m = draw(name, EW_RUNG_TABLE, 0);
+        hold(name, &m);
+        uv_limits(&m, 0.002, 1.0 / 64);
+        assert_int_equal(m.rung[EW_RUNG_TABLE], m.fragments);
+    }
+}
+
+static void tolerance_zero_is_exact(void **state)
+{
+    (void)state;
+    for (char name = 'A'; name <= 'E'; name++) {
+        measures m = draw(name, EW_RUNG_AUTO, 0);
+        hold(name, &m);
+        assert_int_equal(m.rung[EW_RUNG_EXACT], m.fragments);
+    }
+}
+
+/* Colours are held to the disc of the tolerance (measure_end); affine triangles appear as
+ * the tolerance grows, on the sphere's small triangles only. */
+static void automatic_choice_keeps_its_tolerance(void **state)
+{
+    (void)state;
+    long before = 0;
+    const uint16_t tolerances[] = { 1, 2, 4, 8, 16, 32 };
+    for (int k = 0; k < 6; k++) {
+        for (char name = 'A'; name <= 'E'; name++) {
+            measures m = draw(name, EW_RUNG_AUTO, tolerances[k]);
+            hold(name, &m);
+            if (name != 'B') {
+                assert_int_equal(m.rung[EW_RUNG_AFFINE], 0);
+                continue;
+            }
+            test_context("tolerance %d/16: %ld affine fragments of B", tolerances[k], m.rung[EW_RUNG_AFFINE]);
+            assert_true(m.rung[EW_RUNG_AFFINE] >= before);
+            before = m.rung[EW_RUNG_AFFINE];
+        }
+    }
+    assert_int_equal(before, 30620);
+}
+
+/* The affine rung is wrong on a floor, and the measure sees it: a check of the check. */
+static void affine_is_noticed(void **state)
+{
+    (void)state;
+    measures m = draw('D', EW_RUNG_AFFINE, 0);
+    assert_int_equal(m.wrong_px, 0);
+    assert_true(m.depth_max <= 1);
+    assert_true(m.v_rms > 50);
+    assert_true(m.colour_px > 10000);
+}
+
+/* scenes.c against the generator of the published figures, where that is at hand. */
+static void scenes_are_the_published_ones(void **state)
+{
+    (void)state;
+    const char *generator = test_shared("bench/gen_scene.py");
+    if (!generator) skip();
+    const char *const runs[] = { "A", "B", "C", "D", "E" };
+    char command[2048];
+    for (int k = 0; k < 5; k++) {
+        char name = runs[k][0];
+        /* D and E stand under the name C in other branches of the header's #if */
+        snprintf(command, sizeof command,
+                 "d=$(mktemp -d) && python3 - \"$PWD/%s\" \"$d\" >/dev/null <<'END' && cat $d/out; rm -rf $d\n"
+                 "import os, re, runpy, sys\n"
+                 "path, folder = sys.argv[1:]\n"
+                 "os.chdir(folder)\n"
+                 "runpy.run_path(path)\n"
+                 "text = open('scene.h').read()\n"
+                 "parts = re.split(r'#if[^\\n]*|#elif[^\\n]*|#else|#endif', text)\n"
+                 "name = '%c'\n"
+                 "part = {'A': text, 'B': text, 'C': parts[1], 'E': parts[2], 'D': parts[3]}[name]\n"
+                 "tag = name if name in 'AB' else 'C'\n"
+                 "out = open('out', 'w')\n"
+                 "for what in ('v', 'uv', 't'):\n"
+                 "    out.write(re.search(tag + '_' + what + r'\\[\\d+\\]=\\{([^}]*)\\}', part).group(1).replace(',', ' ') + '\\n')\n"
+                 "END\n", generator, name);
+        FILE *f = popen(command, "r");
+        assert_non_null(f);
+        standard_scene_init(&scene, name);
+        int a, b, c;
+        for (uint32_t i = 0; i < scene.vertex_count; i++) {
+            test_context("scene %c vertex %u", name, i);
+            assert_int_equal(fscanf(f, "%d %d %d", &a, &b, &c), 3);
+            assert_true(a == scene.vertices[i].x && b == scene.vertices[i].y && c == -scene.vertices[i].z);
+        }
+        for (uint32_t i = 0; i < scene.vertex_count; i++) {
+            assert_int_equal(fscanf(f, "%d %d", &a, &b), 2);
+            assert_true(a == scene.vertices[i].u && b == scene.vertices[i].v);
+        }
+        for (uint32_t i = 0; i < scene.index_count; i += 3) {
+            assert_int_equal(fscanf(f, "%d %d %d", &a, &b, &c), 3);
+            assert_true(a == scene.indices[i] && c == scene.indices[i + 1] && b == scene.indices[i + 2]);
+        }
+        assert_int_equal(fscanf(f, "%d", &a), EOF);
+        pclose(f);
+    }
+}
+
+/* `make accuracy`: the same figures, printed. */
+static void print_all(void)
+{
+    static const struct {
+        const char *name;
+        ew_rung rung;
+        uint16_t tolerance;
+    } rows[] = { { "exact", EW_RUNG_EXACT, 0 }, { "table", EW_RUNG_TABLE, 0 },   { "affine", EW_RUNG_AFFINE, 0 },
+                 { "auto 1/16 px", EW_RUNG_AUTO, 1 }, { "auto 1/4 px", EW_RUNG_AUTO, 4 },
+                 { "auto 1 px", EW_RUNG_AUTO, 16 } };
+    measure_print_heading();
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        for (char name = 'A'; name <= 'E'; name++) {
+            char text[32];
+            measures m = draw(name, rows[k].rung, rows[k].tolerance);
+            snprintf(text, sizeof text, "%c %s", name, rows[k].name);
+            measure_print(text, &m);
+        }
+    }
+}
+
+int main(void)
+{
+    if (getenv("EW_PRINT")) {
+        print_all();
+        return 0;
+    }
+    const struct CMUnitTest tests[] = {
+        TEST(exact_rung),
+        TEST(table_rung),
+        TEST(tolerance_zero_is_exact),
+        TEST(automatic_choice_keeps_its_tolerance),
+        TEST(affine_is_noticed),
+        TEST(scenes_are_the_published_ones),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,305 @@
+/* The geometry layer: transform, near plane and guard band, against the referee. */
+#include "unit.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "../accuracy/measure.h"
+
+enum { W = 96, H = 72, MESH = 24 };
+
+static uint16_t colour[W * H], depth[W * H], texels[16 * 16];
+static ew_raster raster;
+static ew_geometry geometry;
+static const ew_target target = { colour, depth, W, H, W };
+
+static double uniform(double low, double high) { return low + (high - low) * (test_random() / 4294967296.0); }
+
+static ew_block block(double a)
+{
+    int e;
+    ew_block b = { (int32_t)lrint(ldexp(frexp(a, &e), 30)), 0 };
+    b.e = (int16_t)e;
+    if (b.m == 1 << 30) b.m >>= 1, b.e++;
+    return b;
+}
+
+static double value(int32_t m, int e) { return ldexp(m, e - 30); }
+
+/* A random rotation, a scale and a place in front of the camera, both as the core's matrix
+ * and as the double that the core's numbers stand for. */
+static void random_model_view(ew_mat34 *fixed, double exact[3][4], double size, double distance)
+{
+    int32_t s[3], t[3];
+    ew_quat q = { (int32_t)test_random() >> 1, (int32_t)test_random() >> 1, (int32_t)test_random() >> 1,
+                  ((int32_t)test_random() >> 1) | 1 };
+    ew_block scale = block(size), far_end = block(distance);
+    for (int i = 0; i < 3; i++) s[i] = scale.m, t[i] = 0;
+    t[2] = -far_end.m;
+    t[0] = (int32_t)(far_end.m * uniform(-0.5, 0.5));
+    assert_int_equal(ew_mat34_from_trs(fixed, t, far_end.e, &q, s, scale.e), EW_OK);
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 4; j++) exact[i][j] = value(fixed->row[i].m[j], fixed->row[i].e);
+    }
+}
+
+typedef struct picture {
+    double near_z, size, distance, focal;
+    int triangles;
+} picture;
+
+/* Draws random triangles and judges them. */
+static measures draw_random(const picture *p)
+{
+    ew_vertex16 v[3 * MESH];
+    ew_screen_vertex screen[3 * MESH];
+    uint16_t index[3 * MESH];
+    ew_mat34 model_view;
+    double exact[3][4];
+    measures m;
+    ew_block n = block(p->near_z);
+    int32_t fx = (int32_t)lrint(p->focal * 65536), fy = fx * 4 / 3;
+    const ew_viewport viewport = { 0, 0, W, H };
+    const ref_camera eye = { fx / 65536.0, fy / 65536.0, value(n.m, n.e), 0, 0, W, H };
+    const ew_texture texture = { texels, 4, 4 };
+    const ew_material material = { &texture, 0, 0, EW_RUNG_AUTO, EW_DOUBLE_SIDED };
+
+    assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
+    assert_int_equal(ew_raster_set_material(&raster, &material), EW_OK);
+    ew_raster_clear(&raster, 0);
+    ew_geometry_init(&geometry, &raster);
+    random_model_view(&model_view, exact, p->size, p->distance);
+    const ew_projection projection = { fx, fy, n };
+    assert_int_equal(ew_transform_set(&geometry.transform, &projection, &model_view, &viewport), EW_OK);
+    for (int i = 0; i < 3 * p->triangles; i++) {
+        index[i] = (uint16_t)i;
+        v[i].x = (int16_t)test_random(), v[i].y = (int16_t)test_random(), v[i].z = (int16_t)test_random();
+        v[i].u = (int16_t)test_random(), v[i].v = (int16_t)test_random();
+        if (i % 9 > 5) { /* some small ones: beside the corner before */
+            v[i] = v[i - 1];
+            v[i].x = (int16_t)(v[i].x / 2 + (int)(test_random() % 2000) - 1000);
+            v[i].y = (int16_t)(v[i].y / 2 + (int)(test_random() % 2000) - 1000);
+        }
+    }
+    ew_transform_vertices(&geometry.transform, v, (uint32_t)(3 * p->triangles), screen);
+    measure_begin(&target, &eye, 0);
+    assert_int_equal(measure_mesh(&geometry, exact, v, screen, index, (uint32_t)(3 * p->triangles), 8), 0);
+    measure_end(&m, 0.125);
+    test_context("near %g size %g distance %g focal %g: %ld fragments, %ld wrong, %ld of the truth, vertex %.3f, depth %.3f, "
+                 "u %.4f v %.4f", p->near_z, p->size, p->distance, p->focal, m.fragments, m.wrong_px, m.wrong_truth_px,
+                 m.snapped_max, m.depth_max, m.u_rms, m.v_rms);
+    return m;
+}
+
+static void triangles_in_front(void **state)
+{
+    (void)state;
+    long fragments = 0, truth = 0, pixels = 0;
+    for (int k = 0; k < 300; k++) {
+        picture p = { uniform(0.01, 1), 0, 0, uniform(0.5, 4), 6 };
+        p.size = pow(2, uniform(-10, 10));
+        p.distance = p.size * uniform(2, 20);
+        p.near_z = p.size * uniform(0.01, 0.2);
+        measures m = draw_random(&p);
+        assert_int_equal(m.wrong_px, 0);
+        assert_true(m.snapped_max <= 0.75);
+        assert_true(m.depth_max <= 1);
+        assert_true(m.u_rms <= 1.0 / 16 && m.v_rms <= 1.0 / 16);
+        fragments += m.fragments, truth += m.wrong_truth_px, pixels += m.covered_px;
+    }
+    test_context("%ld fragments, %ld of %ld pixels against the unsnapped outline", fragments, truth, pixels);
+    assert_true(fragments > 100000);
+    assert_true(truth * 1000 < pixels * 3); /* tiny pictures are nearly all outline */
+}
+
+/* Around and through the eye: every triangle crosses the near plane or lies behind it. */
+static void triangles_through_the_near_plane(void **state)
+{
+    (void)state;
+    long fragments = 0, truth = 0;
+    for (int k = 0; k < 400; k++) {
+        picture p = { 0, pow(2, uniform(-6, 6)), 0, uniform(0.5, 2), 4 };
+        p.near_z = p.size * pow(10, uniform(-3, -0.5));
+        p.distance = p.size * uniform(0, 1);
+        measures m = draw_random(&p);
+        assert_int_equal(m.wrong_px, 0);
+        fragments += m.fragments, truth += m.wrong_truth_px;
+    }
+    test_context("%ld fragments, %ld pixels against the unsnapped outline", fragments, truth);
+    assert_true(fragments > 500000);
+    assert_true(truth * 1000 < fragments);
+}
+
+/* Two triangles that share an edge, of which only one leaves the guard band or crosses the
+ * near plane: together they cover what the quadrilateral does, without a crack. */
+static void cut_edges_stay_shut(void **state)
+{
+    (void)state;
+    long together = 0;
+    for (int k = 0; k < 3000; k++) {
+        ew_vertex16 v[4];
+        ew_screen_vertex screen[4];
+        const uint16_t index[6] = { 0, 1, 2, 0, 2, 3 };
+        ew_mat34 model_view;
+            double exact[3][4];
+        const ew_viewport viewport = { 0, 0, W, H };
+        ew_block n = block(pow(10, uniform(-5, -1)));
+        random_model_view(&model_view, exact, 1, uniform(0.2, 1.2));
+        const ew_projection projection = { 65536, 87381, n };
+        ew_geometry_init(&geometry, &raster);
+        assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
+        assert_int_equal(ew_transform_set(&geometry.transform, &projection, &model_view, &viewport), EW_OK);
+        /* a plane parallelogram */
+        int a[3], b[3];
+        for (int i = 0; i < 3; i++) a[i] = (int)(test_random() % 32768) - 16384, b[i] = (int)(test_random() % 32768) - 16384;
+        for (int i = 0; i < 4; i++) {
+            int s = i == 1 || i == 2 ? 1 : -1, t = i >= 2 ? 1 : -1;
+            v[i].x = (int16_t)(s * a[0] / 2 + t * b[0] / 2), v[i].y = (int16_t)(s * a[1] / 2 + t * b[1] / 2);
+            v[i].z = (int16_t)(s * a[2] / 2 + t * b[2] / 2), v[i].u = v[i].v = 0;
+        }
+        ew_transform_vertices(&geometry.transform, v, 4, screen);
+        static uint8_t hits[W * H];
+        memset(hits, 0, sizeof hits);
+        for (int t = 0; t < 2; t++) {
+            const ew_material material = { NULL, 1, 0, EW_RUNG_CONSTANT, EW_DOUBLE_SIDED };
+            ew_raster_set_material(&raster, &material);
+            ew_raster_clear(&raster, 0);
+            assert_true(ew_draw_triangles(&geometry, v, screen, index + 3 * t, 3, 0) >= 0);
+            for (int i = 0; i < W * H; i++) hits[i] = (uint8_t)(hits[i] + colour[i]);
+        }
+        /* in a row of the convex outline there is no gap, and nothing is hit twice */
+        for (int y = 0; y < H; y++) {
+            int first = -1, last = -1;
+            for (int x = 0; x < W; x++) {
+                test_context("case %d: pixel %d %d hit %d times", k, x, y, hits[y * W + x]);
+                assert_true(hits[y * W + x] <= 1);
+                if (hits[y * W + x]) last = x, first = first < 0 ? x : first;
+            }
+            for (int x = first; first >= 0 && x <= last; x++) {
+                test_context("case %d: gap at pixel %d %d", k, x, y);
+                assert_int_equal(hits[y * W + x], 1);
+                together++;
+            }
+        }
+    }
+    assert_true(together > 500000);
+}
+
+/* A floor 10^4 pictures wide fills everything below the horizon. */
+static void guard_band_drops_nothing(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 40; k++) {
+        double half = pow(2, uniform(2, 16));
+        ew_mat34 model_view;
+        ew_block size = block(half);
+        for (int i = 0; i < 3; i++) {
+            for (int j = 0; j < 4; j++) model_view.row[i].m[j] = i == j ? size.m : 0;
+            model_view.row[i].e = size.e;
+        }
+        ew_row_from_q16_16(&model_view.row[1], 0, 0, 0, -65536); /* one unit below the eye */
+        const ew_vertex16 v[4] = { { -32767, 0, -32767, 0, 0 }, { 32767, 0, -32767, 0, 0 },
+                                   { 32767, 0, 32767, 0, 0 }, { -32767, 0, 32767, 0, 0 } };
+        const uint16_t index[6] = { 0, 2, 1, 0, 3, 2 };
+        const ew_viewport viewport = { 0, 0, W, H };
+        const ew_material material = { NULL, 1, 0, EW_RUNG_CONSTANT, 0 };
+        ew_screen_vertex screen[4];
+            assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
+        ew_raster_clear(&raster, 0);
+        ew_raster_set_material(&raster, &material);
+        ew_geometry_init(&geometry, &raster);
+        const ew_projection projection = { 65536, 87381, block(0.01) };
+        assert_int_equal(ew_transform_set(&geometry.transform, &projection, &model_view, &viewport), EW_OK);
+        ew_transform_vertices(&geometry.transform, v, 4, screen);
+        assert_true(ew_draw_triangles(&geometry, v, screen, index, 6, 0) > 0);
+        double horizon = H / 2 * (1 + 87381 / 65536.0 / (half * 32767 / 32768));
+        for (int y = 0; y < H; y++) {
+            for (int x = 0; x < W; x++) {
+                /* inside the floor's own sides, which are seen up to the horizon's width */
+                double z = 87381 / 65536.0 * H / 2 / (y + 0.5 - H / 2.0), x_on_floor = (x + 0.5 - W / 2.0) / (W / 2.0) * z;
+                if (y + 0.5 > horizon && fabs(fabs(x_on_floor) - half) < 0.02 * half) continue;
+                int inside = y + 0.5 > horizon && fabs(x_on_floor) < half;
+                test_context("half %g pixel %d %d", half, x, y);
+                assert_int_equal(colour[y * W + x], inside);
+            }
+        }
+    }
+}
+
+static void projected_positions(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2000; k++) {
+        ew_mat34 model_view;
+            double exact[3][4];
+        const ew_viewport viewport = { -100, 50, 4096, 3000 };
+        ew_block n = block(pow(2, uniform(-12, 3)));
+        double near_z = value(n.m, n.e);
+        double size = pow(2, uniform(-4, 8)), distance = near_z * pow(2, uniform(0, 14));
+        random_model_view(&model_view, exact, size, distance);
+        const ew_projection projection = { 65536, 89478, n };
+        assert_int_equal(ew_transform_set(&geometry.transform, &projection, &model_view, &viewport), EW_OK);
+        for (int i = 0; i < 50; i++) {
+            ew_vertex16 v = { (int16_t)test_random(), (int16_t)test_random(), (int16_t)test_random(), 0, 0 };
+            ew_screen_vertex s;
+            ew_transform_vertices(&geometry.transform, &v, 1, &s);
+            double c[3];
+            for (int r = 0; r < 3; r++) {
+                c[r] = (exact[r][0] * v.x + exact[r][1] * v.y + exact[r][2] * v.z) / 32768 + exact[r][3];
+            }
+            double z = -c[2], x = -100 + 2048 * (1 + c[0] / z), y = 50 + 1500 * (1 - 89478 / 65536.0 * c[1] / z);
+            test_context("z %g near %g x %g y %g: %d %d %u code %d", z, near_z, x, y, s.x, s.y, s.w, s.outcode);
+            if (fabs(z - near_z) < 1e-7 * near_z) continue;
+            assert_int_equal((s.outcode & EW_OUT_NEAR) != 0, z < near_z);
+            if (s.outcode & EW_OUT_NEAR) continue;
+            double furthest = fmax(fabs(x), fabs(y));
+            if (fabs(furthest - EW_GUARD_PX) < 1) continue;
+            assert_int_equal((s.outcode & EW_OUT_GUARD) != 0, furthest > EW_GUARD_PX);
+            if (s.outcode & EW_OUT_GUARD) continue;
+            /* half a unit of rounding, the reciprocal's 2^-29 of the position, and the matrix's
+             * 2^-29 of the model's size as it would be seen at this depth */
+            double seen = 4096 * 4096 * (size * 1.8 + distance) / z;
+            double allowed = 0.5 + 0.02 + furthest * 4096 * ldexp(1, -28) + seen * ldexp(1, -29);
+            assert_true(fabs(s.x - 4096 * x) <= allowed && fabs(s.y - 4096 * y) <= allowed);
+            assert_true(fabs(s.w - ldexp(near_z / z, 31)) <= 0.5 + ldexp(near_z / z, 31 - 28));
+            assert_int_equal((s.outcode & EW_OUT_LEFT) != 0, s.x < -100 * 4096);
+            assert_int_equal((s.outcode & EW_OUT_BOTTOM) != 0, s.y > 3050 * 4096);
+        }
+    }
+}
+
+static void arguments_are_checked(void **state)
+{
+    (void)state;
+    ew_mat34 one;
+    const ew_projection p = { 65536, 65536, block(1) };
+    ew_projection bad;
+    ew_transform t;
+    const ew_viewport good = { 0, 0, W, H }, empty = { 0, 0, 0, H }, wide = { 0, 0, 8193, H };
+    ew_mat34_identity(&one);
+    assert_int_equal(ew_transform_set(&t, &p, &one, &good), EW_OK);
+    assert_int_equal(ew_transform_set(&t, &p, &one, &empty), EW_ERR_ARGUMENT);
+    assert_int_equal(ew_transform_set(&t, &p, &one, &wide), EW_ERR_ARGUMENT);
+    bad = p, bad.focal_x = 0;
+    assert_int_equal(ew_transform_set(&t, &bad, &one, &good), EW_ERR_ARGUMENT);
+    bad = p, bad.focal_y = -1;
+    assert_int_equal(ew_transform_set(&t, &bad, &one, &good), EW_ERR_ARGUMENT);
+    bad = p, bad.near_z.m = 0;
+    assert_int_equal(ew_transform_set(&t, &bad, &one, &good), EW_ERR_ARGUMENT);
+    for (int i = 0; i < 3; i++) one.row[i].e = 60; /* 2^60 near distances large */
+    assert_int_equal(ew_transform_set(&t, &p, &one, &good), EW_ERR_RANGE);
+}
+
+int main(void)
+{
+    for (int i = 0; i < 256; i++) texels[i] = (uint16_t)(0x1000 + 0x0101 * i);
+    const struct CMUnitTest tests[] = {
+        TEST(projected_positions),
+        TEST(triangles_in_front),
+        TEST(triangles_through_the_near_plane),
+        TEST(cut_edges_stay_shut),
+        TEST(guard_band_drops_nothing),
+        TEST(arguments_are_checked),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,448 @@
+/* The raster layer: coverage against the referee's exact edge functions, depth rules,
+ * ranges, borders. */
+#include "unit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "edgewalk/raster.h"
+#include "../reference/referee.h"
+
+enum { W = 64, H = 48, STRIDE = 70, GUARD = 64, MARK = 0x1234 };
+
+static uint16_t colour_memory[2 * GUARD + STRIDE * H], depth_memory[2 * GUARD + STRIDE * H];
+static uint16_t *const colour = colour_memory + GUARD, *const depth = depth_memory + GUARD;
+static ew_raster raster;
+
+static void start(int with_depth)
+{
+    const ew_target target = { colour, with_depth ? depth : NULL, W, H, STRIDE };
+    for (size_t i = 0; i < sizeof colour_memory / sizeof *colour_memory; i++) colour_memory[i] = depth_memory[i] = MARK;
+    assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
+    ew_raster_clear(&raster, 0);
+}
+
+static void use(uint16_t rgb565, uint8_t flags)
+{
+    const ew_material m = { NULL, rgb565, 0, EW_RUNG_CONSTANT, flags };
+    assert_int_equal(ew_raster_set_material(&raster, &m), EW_OK);
+}
+
+/* Nothing outside of the picture was written. */
+static void check_borders(void)
+{
+    for (size_t i = 0; i < sizeof colour_memory / sizeof *colour_memory; i++) {
+        long at = (long)i - GUARD;
+        if (at >= 0 && at < (long)STRIDE * H && at % STRIDE < W) continue;
+        assert_int_equal(colour_memory[i], MARK);
+        assert_int_equal(depth_memory[i], MARK);
+    }
+}
+
+static ew_raster_vertex corner(int32_t x, int32_t y, uint32_t w)
+{
+    ew_raster_vertex v = { x, y, w, 0, 0 };
+    return v;
+}
+
+static int32_t px(double a) { return (int32_t)lrint(a * 4096); }
+
+/* Draws and compares each pixel of the picture with exact coverage. Returns the covered. */
+static int compare(const ew_raster_vertex v[3])
+{
+    int64_t sx[3], sy[3];
+    for (int i = 0; i < 3; i++) {
+        sx[i] = ref_snap(v[i].x / 4096.0, EW_SUBPIXEL_BITS);
+        sy[i] = ref_snap(v[i].y / 4096.0, EW_SUBPIXEL_BITS);
+    }
+    test_context("%d %d, %d %d, %d %d (1/4096 px)", v[0].x, v[0].y, v[1].x, v[1].y, v[2].x, v[2].y);
+    ew_raster_clear(&raster, 0);
+    int result = ew_raster_triangle(&raster, &v[0], &v[1], &v[2]), covered = 0;
+    assert_true(result == 0 || result == 1);
+    for (int y = 0; y < H; y++) {
+        for (int x = 0; x < W; x++) {
+            int exact = ref_covers(sx, sy, EW_SUBPIXEL_BITS, x, y);
+            covered += exact;
+            if ((colour[y * STRIDE + x] != 0) != exact) fail_msg("pixel %d %d: exact %d", x, y, exact);
+        }
+    }
+    assert_int_equal(result, covered > 0);
+    return covered;
+}
+
+/* A coordinate of one of several kinds: whole pixels, centres, eighths, any; near the
+ * picture, far outside, at the guard band. */
+static int32_t coordinate(int size)
+{
+    uint32_t r = test_random();
+    int32_t base;
+    switch (r >> 4 & 7) {
+    case 0: base = (int32_t)(test_random() % (unsigned)(EW_GUARD_PX * 2)) * 4096 - EW_GUARD_PX * 4096; break;
+    case 1: base = (int32_t)(test_random() % 8192u) * 4096 - 4096 * 4096; break;
+    default: base = ((int32_t)(test_random() % (unsigned)(size + 20)) - 10) * 4096; break;
+    }
+    switch (r & 7) {
+    case 0: break;
+    case 1:
+    case 2:
+    case 3: base += 2048; break;
+    case 4: base += (int32_t)(test_random() & 7) * 512; break;
+    default: base += (int32_t)(test_random() & 4095); break;
+    }
+    const int32_t guard = EW_GUARD_PX * 4096;
+    return base > guard ? guard : base < -guard ? -guard : base;
+}
+
+static void random_triangles_are_covered_exactly(void **state)
+{
+    (void)state;
+    long covered = 0;
+    start(0);
+    use(0xFFFF, EW_DOUBLE_SIDED);
+    for (int n = 0; n < 60000; n++) {
+        ew_raster_vertex v[3];
+        for (int i = 0; i < 3; i++) v[i] = corner(coordinate(W), coordinate(H), 1 + (test_random() >> 1));
+        if (n % 3 == 0) { /* slivers and tiny ones: two corners close together */
+            v[1] = v[0];
+            v[1].x += (int32_t)(test_random() % 2048) - 1024;
+            v[1].y += (int32_t)(test_random() % 2048) - 1024;
+            if (n % 6 == 0) {
+                v[2] = v[0];
+                v[2].x += (int32_t)(test_random() % 8192) - 4096;
+                v[2].y += (int32_t)(test_random() % 8192) - 4096;
+            }
+            for (int i = 1; i < 3; i++) {
+                const int32_t guard = EW_GUARD_PX * 4096;
+                v[i].x = v[i].x > guard ? guard : v[i].x < -guard ? -guard : v[i].x;
+                v[i].y = v[i].y > guard ? guard : v[i].y < -guard ? -guard : v[i].y;
+            }
+        }
+        covered += compare(v);
+    }
+    assert_true(covered > 1000000);
+    check_borders();
+}
+
+/* Every triangle of a net whose corners were shaken: the net covers each pixel inside it
+ * exactly once. Additive counting through a depth-less target needs one draw per triangle. */
+static void nets_cover_each_pixel_once(void **state)
+{
+    (void)state;
+    enum { N = 8 };
+    start(0);
+    use(1, 0);
+    for (int n = 0; n < 300; n++) {
+        static ew_raster_vertex net[N + 1][N + 1];
+        static uint8_t hits[H][W];
+        memset(hits, 0, sizeof hits);
+        for (int j = 0; j <= N; j++) {
+            for (int i = 0; i <= N; i++) {
+                int inner = i > 0 && i < N && j > 0 && j < N;
+                int32_t x = i * W * 4096 / N, y = j * H * 4096 / N;
+                /* up to 40 % of a cell, so no triangle turns over */
+                int32_t shake = inner ? (int32_t)(test_random() % 13107) - 6553 : 0;
+                net[j][i] = corner(x + shake * 2, y + (inner ? (int32_t)(test_random() % 9000) - 4500 : 0), 1u << 30);
+                if (n & 1) { /* on half pixels */
+                    net[j][i].x = EW_ASR(net[j][i].x, 11) * 2048;
+                    net[j][i].y = EW_ASR(net[j][i].y, 11) * 2048;
+                }
+            }
+        }
+        for (int t = 0; t < 2 * N * N; t++) {
+            int i = t / 2 % N, j = t / 2 / N;
+            const ew_raster_vertex *a = &net[j][i], *b = &net[j + 1][i], *c = &net[j + 1][i + 1], *d = &net[j][i + 1];
+            ew_raster_clear(&raster, 0);
+            if (t & 1) ew_raster_triangle(&raster, a, c, d);
+            else ew_raster_triangle(&raster, a, b, c);
+            for (int y = 0; y < H; y++) {
+                for (int x = 0; x < W; x++) hits[y][x] = (uint8_t)(hits[y][x] + colour[y * STRIDE + x]);
+            }
+        }
+        for (int y = 0; y < H; y++) {
+            for (int x = 0; x < W; x++) {
+                test_context("net %d, pixel %d %d: %d hits", n, x, y, hits[y][x]);
+                assert_int_equal(hits[y][x], 1);
+            }
+        }
+    }
+}
+
+static void fan_of_a_thousand(void **state)
+{
+    (void)state;
+    enum { SPOKES = 1000 };
+    static uint16_t hits[H][W];
+    start(0);
+    use(1, 0);
+    memset(hits, 0, sizeof hits);
+    const double pi = acos(-1.0);
+    ew_raster_vertex hub = corner(px(31.37), px(24.61), 1u << 30), rim[SPOKES];
+    for (int i = 0; i < SPOKES; i++) {
+        rim[i] = corner(px(31.37 + 200 * cos(2 * pi * i / SPOKES)), px(24.61 - 200 * sin(2 * pi * i / SPOKES)), 1u << 29);
+    }
+    for (int i = 0; i < SPOKES; i++) {
+        ew_raster_clear(&raster, 0);
+        ew_raster_triangle(&raster, &hub, &rim[i], &rim[(i + 1) % SPOKES]);
+        for (int y = 0; y < H; y++) {
+            for (int x = 0; x < W; x++) hits[y][x] = (uint16_t)(hits[y][x] + colour[y * STRIDE + x]);
+        }
+    }
+    for (int y = 0; y < H; y++) {
+        for (int x = 0; x < W; x++) assert_int_equal(hits[y][x], 1);
+    }
+}
+
+/* A hand-drawn picture of the rule: the square from (2, 1) to (5, 3), whose edges go
+ * through no centre, and the one from centre to centre, which keeps its left and top. */
+static void hand_drawn(void **state)
+{
+    (void)state;
+    static const char *const expected[8] = { "................", "..aaa...........", "..aaa...bbb.....",
+                                             "........bbb.....", "................", "............c...",
+                                             "...........cc...", "................" };
+    const double square[2][4] = { { 2, 1, 5, 3 }, { 8.5, 2.5, 11.5, 4.5 } };
+    start(0);
+    for (int k = 0; k < 2; k++) {
+        ew_raster_vertex a = corner(px(square[k][0]), px(square[k][1]), 1u << 30),
+                         b = corner(px(square[k][0]), px(square[k][3]), 1u << 30),
+                         c = corner(px(square[k][2]), px(square[k][3]), 1u << 30),
+                         d = corner(px(square[k][2]), px(square[k][1]), 1u << 30);
+        use((uint16_t)('a' + k), 0);
+        ew_raster_triangle(&raster, &a, &b, &c);
+        ew_raster_triangle(&raster, &a, &c, &d);
+    }
+    use('c', 0);
+    /* its left edge runs through the centres (12.5, 5.5) and (11.5, 6.5), its right one through
+     * (13.5, ...): left centres belong, right ones do not; the bottom row's do not */
+    ew_raster_vertex a = corner(px(13.5), px(4.5), 1u << 30), b = corner(px(10.5), px(7.5), 1u << 30),
+                     c = corner(px(13.5), px(7.5), 1u << 30);
+    ew_raster_triangle(&raster, &a, &b, &c);
+    for (int y = 0; y < 8; y++) {
+        for (int x = 0; x < 16; x++) {
+            test_context("pixel %d %d", x, y);
+            assert_int_equal(colour[y * STRIDE + x], expected[y][x] == '.' ? 0 : expected[y][x]);
+        }
+    }
+}
+
+static void only_fronts_are_drawn(void **state)
+{
+    (void)state;
+    ew_raster_vertex a = corner(px(1), px(1), 1u << 30), b = corner(px(1), px(20), 1u << 30),
+                     c = corner(px(20), px(20), 1u << 30), same = a;
+    start(1);
+    use(7, 0);
+    assert_int_equal(ew_raster_triangle(&raster, &a, &b, &c), 1); /* counter-clockwise to the viewer */
+    assert_int_equal(ew_raster_triangle(&raster, &a, &c, &b), 0);
+    assert_int_equal(ew_raster_triangle(&raster, &a, &b, &same), 0);
+    use(7, EW_DOUBLE_SIDED);
+    assert_int_equal(ew_raster_triangle(&raster, &a, &c, &b), 1);
+    assert_int_equal(ew_raster_triangle(&raster, &a, &b, &b), 0);
+}
+
+static void draw_square(uint16_t rgb565, uint32_t w, uint8_t flags)
+{
+    ew_raster_vertex a = corner(0, 0, w), b = corner(0, px(H), w), c = corner(px(W), px(H), w), d = corner(px(W), 0, w);
+    use(rgb565, flags);
+    assert_int_equal(ew_raster_triangle(&raster, &a, &b, &c), 1);
+    assert_int_equal(ew_raster_triangle(&raster, &a, &c, &d), 1);
+}
+
+static void depth_rules(void **state)
+{
+    (void)state;
+    start(1);
+    draw_square(1, 100u << 15, 0);
+    assert_int_equal(depth[0], 100);
+    draw_square(2, 100u << 15, 0); /* equal: the first stays */
+    assert_int_equal(colour[STRIDE + 1], 1);
+    draw_square(3, (100u << 15) + 32767, 0); /* still unit 100 */
+    assert_int_equal(colour[STRIDE + 1], 1);
+    draw_square(4, 101u << 15, 0);
+    assert_int_equal(colour[STRIDE + 1], 4);
+    draw_square(5, 99u << 15, 0);
+    assert_int_equal(colour[STRIDE + 1], 4);
+    draw_square(6, 99u << 15, EW_NO_DEPTH_TEST | EW_NO_DEPTH_WRITE);
+    assert_int_equal(colour[STRIDE + 1], 6);
+    assert_int_equal(depth[STRIDE + 1], 101);
+    draw_square(7, 200u << 15, EW_NO_DEPTH_WRITE);
+    assert_int_equal(colour[STRIDE + 1], 7);
+    assert_int_equal(depth[STRIDE + 1], 101);
+    draw_square(8, 50u << 15, EW_NO_DEPTH_TEST);
+    assert_int_equal(depth[STRIDE + 1], 50);
+    ew_raster_clear(&raster, 0);
+    draw_square(9, 1, 0); /* the far horizon is 1, nearer than the cleared buffer */
+    assert_int_equal(depth[0], 1);
+    assert_int_equal(colour[0], 9);
+    draw_square(10, 0x80000000u, 0); /* the near plane is 65535 */
+    assert_int_equal(depth[0], 65535);
+    assert_int_equal(colour[0], 10);
+    check_borders();
+}
+
+static void scissor_cuts_exactly(void **state)
+{
+    (void)state;
+    static uint16_t whole[STRIDE * H];
+    for (int n = 0; n < 3000; n++) {
+        ew_raster_vertex v[3];
+        for (int i = 0; i < 3; i++) v[i] = corner(coordinate(W), coordinate(H), 1 + (test_random() >> 1));
+        start(1);
+        use(0xABCD, EW_DOUBLE_SIDED);
+        ew_raster_triangle(&raster, &v[0], &v[1], &v[2]);
+        memcpy(whole, depth, sizeof whole);
+        ew_rect r;
+        r.x0 = (uint16_t)(test_random() % (W + 1)), r.x1 = (uint16_t)(r.x0 + test_random() % (unsigned)(W + 1 - r.x0));
+        r.y0 = (uint16_t)(test_random() % (H + 1)), r.y1 = (uint16_t)(r.y0 + test_random() % (unsigned)(H + 1 - r.y0));
+        ew_raster_clear(&raster, 0);
+        assert_int_equal(ew_raster_set_scissor(&raster, &r), EW_OK);
+        ew_raster_triangle(&raster, &v[0], &v[1], &v[2]);
+        for (int y = 0; y < H; y++) {
+            for (int x = 0; x < W; x++) {
+                int inside = x >= r.x0 && x < r.x1 && y >= r.y0 && y < r.y1;
+                test_context("rect %d %d %d %d pixel %d %d, triangle %d %d, %d %d, %d %d", r.x0, r.y0, r.x1, r.y1, x, y,
+                             v[0].x, v[0].y, v[1].x, v[1].y, v[2].x, v[2].y);
+                uint16_t here = depth[y * STRIDE + x], there = whole[y * STRIDE + x];
+                if (!inside) assert_int_equal(here, 0);
+                else assert_true((here != 0) == (there != 0) && abs(here - there) <= 1);
+            }
+        }
+    }
+    check_borders();
+}
+
+/* Spans and columns of 4,096 pixels: exact to the last one, and depth does not drift. */
+static void the_largest_target(void **state)
+{
+    (void)state;
+    enum { SIZE = EW_TARGET_MAX };
+    uint16_t *c = calloc(SIZE * 8, 2), *d = calloc(SIZE * 8, 2);
+    assert_true(c && d);
+    for (int turned = 0; turned < 2; turned++) {
+        ew_target target = { c, d, (uint16_t)(turned ? 8 : SIZE), (uint16_t)(turned ? SIZE : 8), (uint16_t)(turned ? 8 : SIZE) };
+        assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
+        ew_raster_clear(&raster, 0);
+        use(1, EW_DOUBLE_SIDED);
+        double far_w = 0.001, near_w = 0.999;
+        ew_raster_vertex a = corner(0, 0, (uint32_t)lrint(ldexp(near_w, 31))), b = corner(px(8), px(8), 0), e = b;
+        b.x = turned ? px(8) : 0, b.y = turned ? 0 : px(8), b.w = a.w;
+        e.x = turned ? 0 : px(SIZE), e.y = turned ? px(SIZE) : 0, e.w = (uint32_t)lrint(ldexp(far_w, 31));
+        assert_int_equal(ew_raster_triangle(&raster, &a, &b, &e), 1);
+        int64_t sx[3] = { a.x >> 4, b.x >> 4, e.x >> 4 }, sy[3] = { a.y >> 4, b.y >> 4, e.y >> 4 };
+        for (int i = 0; i < SIZE; i++) {
+            for (int k = 0; k < 8; k++) {
+                int x = turned ? k : i, y = turned ? i : k;
+                test_context("turned %d pixel %d %d", turned, x, y);
+                int exact = EW_SUBPIXEL_BITS == 8 ? ref_covers(sx, sy, 8, x, y) : c[y * target.stride + x];
+                assert_int_equal(c[y * target.stride + x], exact);
+                double w = near_w + (far_w - near_w) * (i + 0.5) / SIZE;
+                if (exact) assert_true(fabs(d[y * target.stride + x] + 0.5 - 65536 * w) < 0.6);
+            }
+        }
+    }
+    free(c);
+    free(d);
+}
+
+static void arguments_are_checked(void **state)
+{
+    (void)state;
+    ew_raster r;
+    uint16_t pixels[4];
+    ew_target good = { pixels, NULL, 2, 2, 2 }, t;
+    assert_int_equal(ew_raster_init(&r, &good), EW_OK);
+    t = good, t.colour = NULL;
+    assert_int_equal(ew_raster_init(&r, &t), EW_ERR_ARGUMENT);
+    t = good, t.width = 0;
+    assert_int_equal(ew_raster_init(&r, &t), EW_ERR_ARGUMENT);
+    t = good, t.height = 4097;
+    assert_int_equal(ew_raster_init(&r, &t), EW_ERR_ARGUMENT);
+    t = good, t.stride = 1;
+    assert_int_equal(ew_raster_init(&r, &t), EW_ERR_ARGUMENT);
+    ew_raster_init(&r, &good);
+
+    const ew_rect rects[4] = { { 0, 0, 3, 2 }, { 0, 0, 2, 3 }, { 1, 0, 0, 2 }, { 0, 2, 2, 1 } };
+    for (int i = 0; i < 4; i++) assert_int_equal(ew_raster_set_scissor(&r, &rects[i]), EW_ERR_ARGUMENT);
+
+    ew_texture texture = { pixels, 1, 1 };
+    ew_material material = { &texture, 0, 4, EW_RUNG_AUTO, 0 }, m;
+    assert_int_equal(ew_raster_set_material(&r, &material), EW_OK);
+    m = material, m.rung = EW_RUNG_CONSTANT + 1;
+    assert_int_equal(ew_raster_set_material(&r, &m), EW_ERR_ARGUMENT);
+    m = material, m.tolerance = EW_TOLERANCE_MAX + 1;
+    assert_int_equal(ew_raster_set_material(&r, &m), EW_ERR_ARGUMENT);
+    m = material, m.flags = 8;
+    assert_int_equal(ew_raster_set_material(&r, &m), EW_ERR_ARGUMENT);
+    texture.log2_width = 12;
+    assert_int_equal(ew_raster_set_material(&r, &material), EW_ERR_ARGUMENT);
+    texture.log2_width = 1, texture.texels = NULL;
+    assert_int_equal(ew_raster_set_material(&r, &material), EW_ERR_ARGUMENT);
+    texture.texels = pixels;
+    assert_int_equal(ew_raster_set_material(&r, &material), EW_OK);
+
+    const int32_t guard = EW_GUARD_PX * 4096;
+    ew_raster_vertex a = { 0, 0, 1u << 30, 0, 0 }, b = { 0, guard, 1u << 30, 0, 0 }, c = { guard, guard, 1u << 30, 0, 0 }, v;
+    assert_int_equal(ew_raster_triangle(&r, &a, &b, &c), 1);
+    v = c, v.x = guard + 1;
+    assert_int_equal(ew_raster_triangle(&r, &a, &b, &v), EW_ERR_RANGE);
+    v = c, v.y = -guard - 1;
+    assert_int_equal(ew_raster_triangle(&r, &v, &b, &a), EW_ERR_RANGE);
+    v = c, v.w = 0;
+    assert_int_equal(ew_raster_triangle(&r, &a, &v, &b), EW_ERR_RANGE);
+    v = c, v.w = 0x80000001u;
+    assert_int_equal(ew_raster_triangle(&r, &a, &v, &b), EW_ERR_RANGE);
+    v = c, v.u = INT32_MIN;
+    assert_int_equal(ew_raster_triangle(&r, &a, &b, &v), EW_ERR_RANGE);
+    v = c, v.u = 32768 * 4096;
+    assert_int_equal(ew_raster_triangle(&r, &a, &b, &v), EW_ERR_RANGE); /* 32,768 texels apart */
+    v.u -= 1;
+    assert_int_equal(ew_raster_triangle(&r, &a, &b, &v), 1);
+}
+
+/* Any bits at all: an error code or a drawn triangle, nothing written outside. UBSan and
+ * ASan watch this one in MODE=sanitize. */
+static void any_bits(void **state)
+{
+    (void)state;
+    static uint16_t texels[64 * 64];
+    start(1);
+    for (int n = 0; n < 400000; n++) {
+        ew_texture texture = { texels, (uint8_t)(test_random() % 7), (uint8_t)(test_random() % 7) };
+        ew_material m = { test_random() & 3 ? &texture : NULL, (uint16_t)test_random(),
+                          (uint16_t)(test_random() & 1 ? 0 : test_random() % 300), (uint8_t)(test_random() % 6),
+                          (uint8_t)(test_random() % 9) };
+        if (ew_raster_set_material(&raster, &m) != EW_OK) continue;
+        ew_raster_vertex v[3];
+        for (int i = 0; i < 3; i++) {
+            v[i].x = test_random() & 7 ? coordinate(W) : test_awkward();
+            v[i].y = test_random() & 7 ? coordinate(H) : test_awkward();
+            v[i].w = test_random() & 1 ? test_random() >> (test_random() & 31) : (uint32_t)test_awkward();
+            v[i].u = test_awkward() >> (test_random() & 15);
+            v[i].v = test_awkward() >> (test_random() & 15);
+        }
+        test_context("%d %d %u %d %d, %d %d %u %d %d, %d %d %u %d %d, rung %d tolerance %d", v[0].x, v[0].y, v[0].w, v[0].u,
+                     v[0].v, v[1].x, v[1].y, v[1].w, v[1].u, v[1].v, v[2].x, v[2].y, v[2].w, v[2].u, v[2].v, m.rung,
+                     m.tolerance);
+        int result = ew_raster_triangle(&raster, &v[0], &v[1], &v[2]);
+        assert_true(result == 0 || result == 1 || result == EW_ERR_RANGE);
+    }
+    check_borders();
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        TEST(hand_drawn),
+        TEST(random_triangles_are_covered_exactly),
+        TEST(nets_cover_each_pixel_once),
+        TEST(fan_of_a_thousand),
+        TEST(only_fronts_are_drawn),
+        TEST(depth_rules),
+        TEST(scissor_cuts_exactly),
+        TEST(the_largest_target),
+        TEST(arguments_are_checked),
+        TEST(any_bits),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
