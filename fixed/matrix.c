@@ -1,66 +1,86 @@
 /* Matrices of block numbers.
  *
- * A row keeps the exponent that its largest element needs, so products neither overflow
- * nor lose what a scale of 10^-4 or 10^4 would lose in one fixed format. Every product
- * goes through one function, row_combine: a row is a weighted sum of rows.
+ * A row keeps the exponent that its largest element needs, and another for its
+ * translation, so products neither overflow nor lose what a scale of 10^-4 or 10^4 would
+ * lose in one fixed format. Every product goes through one function, row_combine: a row
+ * is a weighted sum of rows.
  */
 #include "edgewalk/fixed.h"
 
 enum { EXPONENT_LIMIT = 1000 };
 
-/* Brings four sums, in units of 2^(e - 60), into a row. */
-static int row_normalise(ew_row *out, const int64_t sum[4], int32_t e)
+/* Brings `count` sums, in units of 2^(e - 60), to mantissas with one exponent. */
+static int normalise(int32_t *m, int16_t *exponent, const int64_t *sum, int count, int32_t e)
 {
     uint64_t largest = 0;
-    for (int j = 0; j < 4; j++) {
+    for (int j = 0; j < count; j++) {
         uint64_t a = ew_abs64(sum[j]);
         if (a > largest) largest = a;
     }
-    if (largest == 0) {
-        for (int j = 0; j < 4; j++) out->m[j] = 0;
-        out->e = 0;
-        return EW_OK;
-    }
     /* The largest becomes [2^29, 2^30]; 2^30 only through rounding. */
     int shift = 34 - ew_clz64(largest); /* to the right; -29 to 34 */
-    int32_t exponent = e + shift - 30;
-    if (exponent < -EXPONENT_LIMIT || exponent > EXPONENT_LIMIT) return EW_ERR_RANGE;
-    for (int j = 0; j < 4; j++) {
-        if (shift > 0) out->m[j] = (int32_t)EW_ASR(EW_ASR(sum[j], shift - 1) + 1, 1);
-        else out->m[j] = (int32_t)(sum[j] * ((int64_t)1 << -shift));
+    int32_t result = largest ? e + shift - 30 : 0;
+    if (result < -EXPONENT_LIMIT || result > EXPONENT_LIMIT) return EW_ERR_RANGE;
+    for (int j = 0; j < count; j++) {
+        if (shift > 0) m[j] = (int32_t)EW_ASR(EW_ASR(sum[j], shift - 1) + 1, 1);
+        else m[j] = (int32_t)(sum[j] * ((int64_t)1 << -shift));
     }
-    out->e = (int16_t)exponent;
+    *exponent = (int16_t)result;
     return EW_OK;
 }
 
-/* out = sum over k of a[k] * b[k]; b[3] is 0 0 0 1 where `affine`. out may be a. */
-static int row_combine(ew_row *out, const ew_row *a, const ew_row *b, int affine)
+/* A row from sums; the three in units of 2^(e - 60), the fourth of 2^(e_last - 60). */
+static int row_normalise(ew_row *out, const int64_t sum[4], int32_t e, int32_t e_last)
 {
-    int32_t top = -EXPONENT_LIMIT - 1;
+    int error = normalise(out->m, &out->e, sum, 3, e);
+    return error ? error : normalise(out->m + 3, &out->e_last, sum + 3, 1, e_last);
+}
+
+/* A product's part: a[k] times elements first .. first + count - 1 of b[k], summed over k.
+ * Each b[k] gives the elements' common exponent; where all of them are 0 it does not
+ * count. Returns the exponent of the sums' unit, 2^(e - 60). */
+static int32_t sum_products(int64_t *sum, const ew_row *a, const ew_row *const b[4], int first, int count)
+{
+    int32_t e[4], top = 0;
+    int any = 0;
     for (int k = 0; k < 4; k++) {
-        int32_t e = affine && k == 3 ? 0 : b[k].e;
-        if (a->m[k] != 0 && e > top) top = e;
+        uint32_t bits = 0;
+        for (int j = first; j < first + count; j++) bits |= (uint32_t)b[k]->m[j];
+        e[k] = (k < 3 ? a->e : a->e_last) + (first < 3 ? b[k]->e : b[k]->e_last);
+        if (a->m[k] != 0 && bits != 0 && (!any || e[k] > top)) top = e[k], any = 1;
     }
-    int64_t sum[4] = { 0, 0, 0, 0 };
-    for (int k = 0; k < 4; k++) {
-        if (a->m[k] == 0) continue;
-        if (affine && k == 3) {
-            if (top < 63) sum[3] += EW_ASR((int64_t)a->m[3] * ((int64_t)1 << 30), top);
-            continue;
+    for (int j = 0; j < count; j++) {
+        sum[j] = 0;
+        for (int k = 0; k < 4; k++) {
+            /* four products of at most 2^60; what is shifted out is below the last bit */
+            int64_t product = ew_mul_s32(a->m[k], b[k]->m[first + j]);
+            if (product != 0 && top - e[k] <= 62) sum[j] += EW_ASR(product, top - e[k]);
         }
-        int32_t shift = top - b[k].e;
-        if (shift > 62) continue; /* below the last bit of the result */
-        for (int j = 0; j < 4; j++) sum[j] += EW_ASR(ew_mul_s32(a->m[k], b[k].m[j]), shift);
     }
-    /* four products of at most 2^60: |sum| <= 2^62 */
-    return row_normalise(out, sum, a->e + top);
+    return top;
+}
+
+/* out = a (b[0] b[1] b[2] b[3]). out may be a. */
+static int row_combine(ew_row *out, const ew_row *a, const ew_row *const b[4])
+{
+    int64_t sum[4];
+    int32_t e = sum_products(sum, a, b, 0, 3), e_last = sum_products(sum + 3, a, b, 3, 1);
+    return row_normalise(out, sum, e, e_last);
+}
+
+static const ew_row last_affine_row = { { 0, 0, 0, (int32_t)1 << 29 }, 0, 1 };
+
+static void rows_of(const ew_row *rows[4], const ew_row *first_three, const ew_row *last)
+{
+    for (int k = 0; k < 3; k++) rows[k] = &first_three[k];
+    rows[3] = last;
 }
 
 void ew_row_from_q16_16(ew_row *row, ew_q16_16 a, ew_q16_16 b, ew_q16_16 c, ew_q16_16 d)
 {
     int64_t sum[4];
     sum[0] = a, sum[1] = b, sum[2] = c, sum[3] = d;
-    (void)row_normalise(row, sum, 60 - 16); /* the exponents are far from the limit */
+    (void)row_normalise(row, sum, 60 - 16, 60 - 16); /* the exponents are far from the limit */
 }
 
 void ew_mat34_identity(ew_mat34 *out)
@@ -73,8 +93,10 @@ void ew_mat34_identity(ew_mat34 *out)
 int ew_mat34_mul(ew_mat34 *out, const ew_mat34 *a, const ew_mat34 *b)
 {
     ew_mat34 r;
+    const ew_row *rows[4];
+    rows_of(rows, b->row, &last_affine_row);
     for (int i = 0; i < 3; i++) {
-        int error = row_combine(&r.row[i], &a->row[i], b->row, 1);
+        int error = row_combine(&r.row[i], &a->row[i], rows);
         if (error) return error;
     }
     *out = r;
@@ -84,8 +106,10 @@ int ew_mat34_mul(ew_mat34 *out, const ew_mat34 *a, const ew_mat34 *b)
 int ew_mat44_mul_mat34(ew_mat44 *out, const ew_mat44 *a, const ew_mat34 *b)
 {
     ew_mat44 r;
+    const ew_row *rows[4];
+    rows_of(rows, b->row, &last_affine_row);
     for (int i = 0; i < 4; i++) {
-        int error = row_combine(&r.row[i], &a->row[i], b->row, 1);
+        int error = row_combine(&r.row[i], &a->row[i], rows);
         if (error) return error;
     }
     *out = r;
@@ -95,8 +119,10 @@ int ew_mat44_mul_mat34(ew_mat44 *out, const ew_mat44 *a, const ew_mat34 *b)
 int ew_mat44_mul(ew_mat44 *out, const ew_mat44 *a, const ew_mat44 *b)
 {
     ew_mat44 r;
+    const ew_row *rows[4];
+    rows_of(rows, b->row, &b->row[3]);
     for (int i = 0; i < 4; i++) {
-        int error = row_combine(&r.row[i], &a->row[i], b->row, 0);
+        int error = row_combine(&r.row[i], &a->row[i], rows);
         if (error) return error;
     }
     *out = r;
@@ -146,16 +172,11 @@ int ew_mat34_from_trs(ew_mat34 *out, const int32_t t[3], int16_t t_exponent, con
     if (error) return error;
     ew_mat34 r;
     for (int i = 0; i < 3; i++) {
-        /* rotation * scale has exponent s_exponent, |product| <= 2^30 2^30; the
-         * translation is brought to the larger of the two. */
-        int32_t top = t[i] != 0 && t_exponent > s_exponent ? t_exponent : s_exponent;
-        int32_t down = top - s_exponent, t_down = top - t_exponent;
+        /* |rotation scale| <= 2^30 2^30 */
         int64_t sum[4];
-        for (int j = 0; j < 3; j++) {
-            sum[j] = down > 62 ? 0 : EW_ASR(ew_mul_s32(rotation[i][j], s[j]), down);
-        }
-        sum[3] = t[i] == 0 || t_down > 62 ? 0 : EW_ASR((int64_t)t[i] * ((int64_t)1 << 30), t_down);
-        error = row_normalise(&r.row[i], sum, top);
+        for (int j = 0; j < 3; j++) sum[j] = ew_mul_s32(rotation[i][j], s[j]);
+        sum[3] = (int64_t)t[i] * ((int64_t)1 << 30);
+        error = row_normalise(&r.row[i], sum, s_exponent, t_exponent);
         if (error) return error;
     }
     *out = r;
@@ -169,10 +190,8 @@ int ew_mat44_perspective(ew_mat44 *out, const ew_projection *p)
     ew_row_from_q16_16(&out->row[0], p->focal_x, 0, 0, 0);
     ew_row_from_q16_16(&out->row[1], 0, p->focal_y, 0, 0);
     ew_row_from_q16_16(&out->row[3], 0, 0, -65536, 0);
-    /* -1 and -2n in one row: as a sum of units 2^(top - 60) */
-    int32_t near_e = near_z.e + 1, top = near_e > 0 ? near_e : 0;
     int64_t sum[4] = { 0, 0, 0, 0 };
-    sum[2] = top > 62 ? 0 : -EW_ASR((int64_t)1 << 60, top);
-    sum[3] = top - near_e > 62 ? 0 : -EW_ASR((int64_t)near_z.m * ((int64_t)1 << 30), top - near_e);
-    return row_normalise(&out->row[2], sum, top);
+    sum[2] = -((int64_t)1 << 60);
+    sum[3] = -(int64_t)near_z.m * ((int64_t)1 << 30);
+    return row_normalise(&out->row[2], sum, 0, near_z.e + 1);
 }

@@ -99,6 +99,7 @@ int main(int argc, char **argv)
         worst.covered_px += m.covered_px;
         worst.colour_px += m.colour_px;
         worst.depth_max = fmax(worst.depth_max, m.depth_max);
+        worst.uv_off = fmax(worst.uv_off, m.uv_off);
         worst.depth_off = fmax(worst.depth_off, m.depth_off);
         worst.snapped_max = fmax(worst.snapped_max, m.snapped_max);
         worst.u_max = fmax(worst.u_max, m.u_max), worst.v_max = fmax(worst.v_max, m.v_max);
@@ -110,10 +111,10 @@ int main(int argc, char **argv)
     printf("%s: %u frames of %ux%u against the referee: %ld fragments, %ld wrong pixels, %ld hit twice, "
            "%ld of a colour that none may have\n",
            o.scene, judged, o.width, o.height, worst.fragments, worst.wrong_px, worst.double_hits, worst.colour_px);
-    printf("%s: texel error rms u %.4f v %.4f, worst u %.3f v %.3f; depth worst %.3f units, "
+    printf("%s: texel error rms u %.4f v %.4f, worst u %.3f v %.3f, %.4f beyond the tolerance; depth worst %.3f units, "
            "%.3f over the disc of 1/256 px; "
            "vertices within %.3f subpixel; %.4f %% of pixels differ from the unsnapped truth's outline\n",
-           o.scene, sqrt(u_sum / n), sqrt(v_sum / n), worst.u_max, worst.v_max, worst.depth_max, worst.depth_off, worst.snapped_max,
+           o.scene, sqrt(u_sum / n), sqrt(v_sum / n), worst.u_max, worst.v_max, worst.uv_off, worst.depth_max, worst.depth_off, worst.snapped_max,
            worst.covered_px ? 100.0 * (double)worst.wrong_truth_px / (double)worst.covered_px : 0.0);
     if (differing) printf("%s: %ld pixels differ between drawing at once and by triangle\n", o.scene, differing);
     free(colour);

@@ -8,7 +8,7 @@
 /* A covering triangle at a pixel, by exact coverage. */
 typedef struct candidate {
     double depth;
-    float u_low, u_high, v_low, v_high; /* texels the colour may come from, as a range          */
+    double low[2], high[2]; /* u and v that the colour may come from                            */
     uint16_t colour;
     int8_t textured;
     ew_texture texture;
@@ -95,11 +95,11 @@ static void keep(size_t at, const candidate *c)
     p->kept[i] = *c;
 }
 
-/* The exact attributes over the disc that the tolerance allows. */
-static void attribute_range(candidate *c, const ref_triangle *t, double px, double py, double radius)
+/* Exact u and v over a disc: least and largest of its centre and 16 points of its rim. */
+static void attribute_range(const ref_triangle *t, double px, double py, double radius, double low[2], double high[2])
 {
     enum { DIRECTIONS = 16 };
-    double low[2] = { HUGE_VAL, HUGE_VAL }, high[2] = { -HUGE_VAL, -HUGE_VAL };
+    low[0] = low[1] = HUGE_VAL, high[0] = high[1] = -HUGE_VAL;
     for (int k = 0; k <= DIRECTIONS; k++) {
         double angle = 2 * acos(-1.0) * k / DIRECTIONS, r = k == DIRECTIONS ? 0 : radius;
         ref_sample s = ref_sample_at(t, px + r * cos(angle), py + r * sin(angle));
@@ -108,8 +108,6 @@ static void attribute_range(candidate *c, const ref_triangle *t, double px, doub
         low[1] = fmin(low[1], s.v), high[1] = fmax(high[1], s.v);
         if (radius == 0) break;
     }
-    c->u_low = (float)low[0], c->u_high = (float)high[0];
-    c->v_low = (float)low[1], c->v_high = (float)high[1];
 }
 
 static void mark_exact(const ew_raster *raster, const ref_triangle *truth, int *box)
@@ -145,7 +143,7 @@ static void mark_exact(const ew_raster *raster, const ref_triangle *truth, int *
                 c.textured = raster->material.texture != NULL;
                 c.texture = raster->texture;
                 if (c.textured) {
-                    attribute_range(&c, truth, x + 0.5, y + 0.5, raster->material.tolerance / 16.0);
+                    attribute_range(truth, x + 0.5, y + 0.5, raster->material.tolerance / 16.0, c.low, c.high);
                 }
                 keep(index_of(x, y), &c);
             }
@@ -159,7 +157,7 @@ static double uv_error(ew_q20_12 core, double exact)
     return remainder(ldexp(core, -12) - exact, 1 << 20);
 }
 
-static void judge_fragment(const logged_fragment *f, const ref_triangle *truth)
+static void judge_fragment(const logged_fragment *f, const ref_triangle *truth, double tolerance)
 {
     now.m.fragments++;
     now.m.rung[f->rung]++;
@@ -184,6 +182,10 @@ static void judge_fragment(const logged_fragment *f, const ref_triangle *truth)
     now.m.textured++;
     now.m.u_max = fmax(now.m.u_max, fabs(eu));
     now.m.v_max = fmax(now.m.v_max, fabs(ev));
+    double low[2], high[2];
+    attribute_range(truth, f->x + 0.5, f->y + 0.5, tolerance + 1.0 / 256, low, high);
+    now.m.uv_off = fmax(now.m.uv_off, fmax(s.u + eu - high[0], low[0] - (s.u + eu)));
+    now.m.uv_off = fmax(now.m.uv_off, fmax(s.v + ev - high[1], low[1] - (s.v + ev)));
     now.u_sum += eu * eu;
     now.v_sum += ev * ev;
 }
@@ -219,7 +221,7 @@ static void judge_triangle(const ew_raster *raster, const ref_triangle *truth)
     mark_exact(raster, truth, box);
     for (size_t i = 0; i < now.fragments; i++) {
         const logged_fragment *f = &now.fragment[i];
-        judge_fragment(f, truth);
+        judge_fragment(f, truth, raster->material.tolerance / 16.0);
         box[0] = f->x < box[0] ? f->x : box[0], box[1] = f->y < box[1] ? f->y : box[1];
         box[2] = f->x > box[2] ? f->x : box[2], box[3] = f->y > box[3] ? f->y : box[3];
     }
@@ -267,8 +269,8 @@ static int colour_allowed(const candidate *c, uint16_t colour, double border)
 {
     if (!c->textured) return colour == c->colour;
     int width = 1 << c->texture.log2_width, height = 1 << c->texture.log2_height;
-    double u0 = floor(c->u_low - border), u1 = floor(c->u_high + border);
-    double v0 = floor(c->v_low - border), v1 = floor(c->v_high + border);
+    double u0 = floor(c->low[0] - border), u1 = floor(c->high[0] + border);
+    double v0 = floor(c->low[1] - border), v1 = floor(c->high[1] + border);
     if (u1 - u0 >= width) u0 = 0, u1 = width - 1;
     if (v1 - v0 >= height) v0 = 0, v1 = height - 1;
     for (double v = v0; v <= v1; v++) {

@@ -23,6 +23,8 @@ typedef struct measures {
                               pixel's centre: what is promised for triangles of any steepness   */
     long saturated;        /* fragments left out of depth_*                                    */
     double u_max, u_rms, v_max, v_rms; /* texels, fragments of textured triangles               */
+    double uv_off;         /* texels, the larger of u and v: how far outside of the exact values over
+                              the disc of the material's tolerance + 1/256 px                   */
     long textured;         /* how many those are                                              */
     long rung[8];          /* fragments by ew_rung                                            */
     long colour_px;        /* pixels whose colour no fragment may have (see measure_end)       */

@@ -14,7 +14,10 @@ static matrix exact(const ew_mat34 *fixed)
 {
     matrix r;
     for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 4; j++) r.m[i][j] = ldexp(fixed->row[i].m[j], fixed->row[i].e - 30);
+        for (int j = 0; j < 4; j++) {
+            const ew_row *row = &fixed->row[i];
+            r.m[i][j] = ldexp(row->m[j], (j < 3 ? row->e : row->e_last) - 30);
+        }
     }
     return r;
 }

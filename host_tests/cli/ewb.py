@@ -24,13 +24,13 @@ def block(m, e):
 
 
 def read_row(data, at):
-    *m, e, zero = struct.unpack_from("<4ihH", data, at)
-    check(zero == 0, "row: last two bytes zero")
-    check(-1000 <= e <= 1000, "row: exponent in range")
-    top = max(abs(x) for x in m)
-    check(2**29 <= top <= 2**30 or (top == 0 and e == 0),
-          "row: largest magnitude normalised, or zero with e = 0")
-    return [block(x, e) for x in m]
+    *m, e, e_last = struct.unpack_from("<4ihh", data, at)
+    for part, exponent in ((m[:3], e), (m[3:], e_last)):
+        check(-1000 <= exponent <= 1000, "row: exponent in range")
+        top = max(abs(x) for x in part)
+        check(2**29 <= top <= 2**30 or (top == 0 and exponent == 0),
+              "row: largest magnitude normalised, or zero with an exponent of 0")
+    return [block(x, e) for x in m[:3]] + [block(m[3], e_last)]
 
 
 def read_matrix(data, at):

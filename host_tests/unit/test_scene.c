@@ -27,7 +27,7 @@ static void add(writer *w, uint32_t value, int bytes)
 static void add_row(writer *w, int32_t a, int32_t b, int32_t c, int32_t d, int e)
 {
     add(w, (uint32_t)a, 4), add(w, (uint32_t)b, 4), add(w, (uint32_t)c, 4), add(w, (uint32_t)d, 4);
-    add(w, (uint32_t)e, 2), add(w, 0, 2);
+    add(w, (uint32_t)e, 2), add(w, (uint32_t)e, 2);
 }
 static void add_identity(writer *w)
 {
@@ -244,7 +244,7 @@ static void every_rule_is_checked(void **state)
         { "CAMR", 68, 1001, 2, "near exponent" },
         { "CAMR", 16, 1001, 2, "view exponent" },
         { "CAMR", 0, (1u << 30) + 1, 4, "view mantissa" },
-        { "CAMR", 18, 1, 2, "zero behind an exponent" },
+        { "CAMR", 18, 1001, 2, "view exponent of the fourth" },
         { "BOUN", 16, (uint32_t)-1001, 2, "bounds exponent" },
         { "NODE", 0, 0, 2, "parent below its node" },
         { "NODE", 68, 1, 2, "parent below its node, second" },
@@ -361,7 +361,10 @@ static void damaged_scenes_do_no_harm(void **state)
     assert_true(accepted > 10000);
 }
 
-static double element(const ew_mat34 *m, int i, int j) { return ldexp(m->row[i].m[j], m->row[i].e - 30); }
+static double element(const ew_mat34 *m, int i, int j) 
+{
+    return ldexp(m->row[i].m[j], (j < 3 ? m->row[i].e : m->row[i].e_last) - 30);
+}
 
 static void tracks_interpolate_and_clamp(void **state)
 {

@@ -160,11 +160,13 @@ typedef struct ew_block {
     int16_t e;
 } ew_block;
 
-/* Four numbers m[k] * 2^(e - 30), |m[k]| <= 2^30. Functions write the largest |m| in
- * [2^29, 2^30], a row of zeros with e = 0. -1000 <= e <= 1000. */
+/* Three numbers m[0..2] * 2^(e - 30) and a fourth, m[3] * 2^(e_last - 30), |m[k]| <= 2^30:
+ * a matrix row whose translation may be of quite another size than its scale. Functions
+ * write the largest |m| of the three, and the fourth, in [2^29, 2^30], zeros with an
+ * exponent of 0. Exponents are within +-1000. */
 typedef struct ew_row {
     int32_t m[4];
-    int16_t e;
+    int16_t e, e_last;
 } ew_row;
 
 /* Affine: rows of (x, y, z, 1); the fourth row is 0 0 0 1. */
@@ -184,8 +186,9 @@ typedef struct ew_quat {
 void ew_row_from_q16_16(ew_row *row, ew_q16_16 a, ew_q16_16 b, ew_q16_16 c, ew_q16_16 d);
 void ew_mat34_identity(ew_mat34 *out);
 /* out = a b (b is applied first). `out` may be a or b. Returns EW_OK or EW_ERR_RANGE
- * when an exponent leaves +-1000; `out` is unchanged then. Relative error of a row: 2^-29
- * of its largest element. */
+ * when an exponent leaves +-1000; `out` is unchanged then. An element's error is
+ * below 2^-28 of (largest of a's row) (largest of b), each taken over the three or the
+ * fourth that meet in it. */
 int ew_mat34_mul(ew_mat34 *out, const ew_mat34 *a, const ew_mat34 *b);
 /* The same for a 4 x 4 matrix times an affine one, and for two 4 x 4 ones. */
 int ew_mat44_mul_mat34(ew_mat44 *out, const ew_mat44 *a, const ew_mat34 *b);

@@ -39,7 +39,7 @@ typedef struct ew_viewport {
 
 /* Model space to the screen, homogeneous: px = x/w, py = y/w, depth = near/w. */
 typedef struct ew_transform {
-    ew_row x, y, w;
+    ew_row x, y, w;     /* here e_last = e                                                  */
     int64_t near_w;     /* the near distance in units of 2^(w.e - 45), those of row w's sums */
     ew_viewport viewport;
 } ew_transform;
@@ -52,8 +52,8 @@ int ew_transform_set(ew_transform *transform, const ew_projection *projection,
                      const ew_mat34 *model_view, const ew_viewport *viewport);
 
 /* Transforms `count` vertices. Positions are rounded to the nearest 1/4096 px; before that
- * they are off by at most 2^-28 of the position and 2^-29 of the model's size and distance
- * as seen, in pixels, at the vertex's depth. So a vertex snaps within 0.75 subpixel of its
+ * they are off by at most 2^-28 of position + viewport, times (size + distance of the
+ * model) / z of the vertex. So a vertex snaps within 0.75 subpixel of its
  * exact projection unless it is nearer than about 1/1000 of the model's size.
  * `out` must not overlap `in`. */
 void ew_transform_vertices(const ew_transform *transform, const ew_vertex16 *in, uint32_t count,

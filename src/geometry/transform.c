@@ -1,6 +1,24 @@
 /* Vertices to the screen. */
 #include "project.h"
 
+/* For sums with q1.15 vertices: the smaller of the two parts loses bits that the sum could
+ * not keep. */
+static void bring_to_one_exponent(ew_row *row)
+{
+    int32_t down = row->e_last - row->e;
+    if (row->m[3] == 0) down = 0;
+    else if (!row->m[0] && !row->m[1] && !row->m[2]) row->e = row->e_last, down = 0;
+    if (down > 31) down = 31; /* rounds to 0 */
+    if (down < -31) down = -31;
+    if (down > 0) {
+        for (int j = 0; j < 3; j++) row->m[j] = EW_ASR(EW_ASR(row->m[j], down - 1) + 1, 1);
+        row->e = row->e_last;
+    } else if (down < 0) {
+        row->m[3] = EW_ASR(EW_ASR(row->m[3], -down - 1) + 1, 1);
+    }
+    row->e_last = row->e;
+}
+
 int ew_transform_set(ew_transform *transform, const ew_projection *projection, const ew_mat34 *model_view,
                      const ew_viewport *viewport)
 {
@@ -21,6 +39,10 @@ int ew_transform_set(ew_transform *transform, const ew_projection *projection, c
     if (!error) error = ew_mat44_mul(&all, &screen, &all);
     if (!error) error = ew_mat44_mul_mat34(&all, &all, model_view);
     if (error) return error;
+
+    bring_to_one_exponent(&all.row[0]);
+    bring_to_one_exponent(&all.row[1]);
+    bring_to_one_exponent(&all.row[3]);
 
     /* n = m 2^(e - 30) in units of 2^(w.e - 45). m < 2^31, so up to 2^31 more keeps it
      * inside 62 bits; a model that small beside the near distance is all clipped. */

@@ -5,6 +5,8 @@
  *
  * w and the two texture quantities step in 32 bits. A step is off by at most half a unit,
  * so the last of 4,096 pixels is off by 2^11 units of 2^-31 in w: 1/16 of a depth unit.
+ * The exact rung steps in 64 bits: where 1/z falls to a small part of its largest value
+ * along a span, u and v would otherwise feel those units as often enlarged.
  */
 #include "triangle.h"
 
@@ -18,21 +20,22 @@
 typedef struct span {
     uint16_t *colour, *depth;
     int32_t n;
-    uint32_t w, dw;
-    uint32_t u, du, v, dv;
+    uint64_t w, dw, u, du, v, dv; /* wide or not: plane_start */
 #if EW_TRACE
     uint16_t x, y;
 #endif
 } span;
 
-/* The value at pixel x of the current row, and the step to the next pixel, rounded. */
-ALWAYS_INLINE uint32_t plane_start(const ew_plane *p, int32_t columns)
+/* The value `columns` pixels right of the plane's own, and the step to the next pixel; where
+ * not wide, their upper halves, the step rounded. */
+ALWAYS_INLINE uint64_t plane_start(const ew_plane *p, int32_t columns, int wide)
 {
-    return (uint32_t)((p->row + ew_wrap_mul64(p->dx, columns)) >> 32);
+    uint64_t start = p->row + ew_wrap_mul64(p->dx, columns);
+    return wide ? start : start >> 32;
 }
-ALWAYS_INLINE uint32_t plane_step(const ew_plane *p)
+ALWAYS_INLINE uint64_t plane_step(const ew_plane *p, int wide)
 {
-    return (uint32_t)((p->dx + 0x80000000u) >> 32);
+    return wide ? p->dx : (p->dx + 0x80000000u) >> 32;
 }
 
 /* near/z to a stored depth. */
@@ -74,21 +77,27 @@ ALWAYS_INLINE void span_loop(const ew_raster *raster, const ew_triangle *t, span
     const int write = s->depth && !(raster->material.flags & EW_NO_DEPTH_WRITE);
     uint16_t pixel = raster->material.colour;
 
+    /* wide: the planes' 64 bits; else their upper halves alone */
+    const int wide = rung == EW_RUNG_EXACT;
+    const uint32_t dw = (uint32_t)s->dw, du = (uint32_t)s->du, dv = (uint32_t)s->dv;
+    uint32_t w = (uint32_t)s->w, uw = (uint32_t)s->u, vw = (uint32_t)s->v;
+
     for (int32_t i = 0; i < s->n; i++) {
-        uint16_t d = depth_from_w(s->w, clamped);
+        if (wide) w = (uint32_t)(s->w >> 32), uw = (uint32_t)(s->u >> 32), vw = (uint32_t)(s->v >> 32);
+        uint16_t d = depth_from_w(w, clamped);
         int32_t u = 0, v = 0;
         int visible = !test || d > s->depth[i];
         if (rung != EW_RUNG_CONSTANT && (visible || EW_TRACE)) {
             if (rung == EW_RUNG_AFFINE) {
-                u = EW_ASR((int32_t)s->u, shift);
-                v = EW_ASR((int32_t)s->v, shift);
+                u = EW_ASR((int32_t)uw, shift);
+                v = EW_ASR((int32_t)vw, shift);
             } else {
-                uint32_t w = clamped ? w_in_range(s->w, t->w_lead) : s->w;
-                int zeros = ew_clz32(w), lead = zeros - t->w_lead;
-                uint32_t m = w << zeros;
+                uint32_t divisor = clamped ? w_in_range(w, t->w_lead) : w;
+                int zeros = ew_clz32(divisor), lead = zeros - t->w_lead;
+                uint32_t m = divisor << zeros;
                 uint32_t r = rung == EW_RUNG_EXACT ? ew_recip_newton(m) : ew_recip_table(m);
-                u = over_w(s->u, lead, r, shift);
-                v = over_w(s->v, lead, r, shift);
+                u = over_w(uw, lead, r, shift);
+                v = over_w(vw, lead, r, shift);
             }
             u = ew_wrap_add32(u, t->u_base);
             v = ew_wrap_add32(v, t->v_base);
@@ -102,11 +111,8 @@ ALWAYS_INLINE void span_loop(const ew_raster *raster, const ew_triangle *t, span
             if (write) s->depth[i] = d;
             s->colour[i] = pixel;
         }
-        s->w += s->dw;
-        if (rung != EW_RUNG_CONSTANT) {
-            s->u += s->du;
-            s->v += s->dv;
-        }
+        if (wide) s->w += s->dw, s->u += s->du, s->v += s->dv;
+        else w += dw, uw += du, vw += dv; /* what a rung does not use, the compiler leaves out */
     }
 }
 
@@ -128,22 +134,24 @@ void ew_span(const ew_raster *raster, const ew_triangle *t, int32_t x, int32_t y
     s.colour = raster->target.colour + at;
     s.depth = raster->target.depth ? raster->target.depth + at : NULL;
     s.n = n;
-    s.w = plane_start(&t->w, columns);
-    s.dw = plane_step(&t->w);
+    int wide = t->rung == EW_RUNG_EXACT;
+    s.w = plane_start(&t->w, columns, wide);
+    s.dw = plane_step(&t->w, wide);
     s.u = s.v = s.du = s.dv = 0;
     if (t->rung != EW_RUNG_CONSTANT) {
-        s.u = plane_start(&t->u, columns);
-        s.du = plane_step(&t->u);
-        s.v = plane_start(&t->v, columns);
-        s.dv = plane_step(&t->v);
+        s.u = plane_start(&t->u, columns, wide);
+        s.du = plane_step(&t->u, wide);
+        s.v = plane_start(&t->v, columns, wide);
+        s.dv = plane_step(&t->v, wide);
     }
 #if EW_TRACE
     s.x = (uint16_t)x;
     s.y = (uint16_t)y;
 #endif
     /* w is linear, so the two ends say whether any pixel's depth needs clamping. */
-    uint32_t last = s.w + s.dw * (uint32_t)(n - 1);
-    int in_range = s.w >= 1u << 15 && s.w <= INT32_MAX && last >= 1u << 15 && last <= INT32_MAX;
+    uint64_t end = s.w + s.dw * (uint64_t)(n - 1);
+    uint32_t first = (uint32_t)(wide ? s.w >> 32 : s.w), last = (uint32_t)(wide ? end >> 32 : end);
+    int in_range = first >= 1u << 15 && first <= INT32_MAX && last >= 1u << 15 && last <= INT32_MAX;
     if (in_range) span_by_rung(raster, t, &s, 0);
     else span_by_rung(raster, t, &s, 1);
 }

@@ -42,6 +42,7 @@ static void row_at(const uint8_t *p, ew_row *row)
 {
     for (int k = 0; k < 4; k++) row->m[k] = i32_at(p + 4 * k);
     row->e = i16_at(p + 16);
+    row->e_last = i16_at(p + 18);
 }
 static void mat34_at(const uint8_t *p, ew_mat34 *m)
 {
@@ -74,8 +75,8 @@ static int row_ok(const uint8_t *p)
         int32_t m = i32_at(p + 4 * k);
         if (m > MANTISSA_LIMIT || m < -MANTISSA_LIMIT) return 0;
     }
-    int16_t e = i16_at(p + 16);
-    return e >= -1000 && e <= 1000 && u16_at(p + 18) == 0;
+    int16_t e = i16_at(p + 16), e_last = i16_at(p + 18);
+    return e >= -1000 && e <= 1000 && e_last >= -1000 && e_last <= 1000;
 }
 static int rows_ok(const uint8_t *p, int count)
 {
@@ -298,7 +299,8 @@ void ew_scene_get_primitive(const ew_scene *scene, uint32_t i, ew_scene_primitiv
         row->m[0] = row->m[1] = row->m[2] = 0;
         row->m[k] = box.m[3];
         row->m[3] = box.m[k];
-        row->e = box.e;
+        row->e = box.e_last;
+        row->e_last = box.e;
     }
     /* sections start on multiples of 4 and both records have even sizes */
     primitive->vertices = (const void *)record(scene, EW_SECTION_VERT, u32_at(p));

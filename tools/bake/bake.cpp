@@ -232,7 +232,7 @@ Grid Baker::make_grid(const Mesh &mesh) const
     /* Grow the scale until the rounded row reaches all corners; once is the rule, a small
      * mesh far from its origin has few bits left for its scale. */
     for (double scale = reach * 32768 / 32767;;
-         scale = scale * 1.0000001 + std::ldexp(1.0, grid.row.e - 30)) {
+         scale = scale * 1.0000001 + std::ldexp(1.0, std::max(grid.row.e, grid.row.e_last) - 30)) {
         grid.row = make_row({c.x, c.y, c.z, scale}, mesh.label);
         grid.origin = {grid.row.value(0), grid.row.value(1), grid.row.value(2)};
         grid.step = grid.row.value(3) / 32768;
@@ -567,7 +567,7 @@ Baked Baker::run()
 
 } // namespace
 
-double Row::value(size_t k) const { return std::ldexp(static_cast<double>(m[k]), e - 30); }
+double Row::value(size_t k) const { return std::ldexp(static_cast<double>(m[k]), (k < 3 ? e : e_last) - 30); }
 
 int32_t round_within(double value, double low, double high)
 {
@@ -576,18 +576,24 @@ int32_t round_within(double value, double low, double high)
 
 Row make_row(const std::array<double, 4> &values, const std::string &what)
 {
-    double largest = 0;
+    Row row;
     for (double value : values) {
         if (!std::isfinite(value)) throw Error(what, "a number is not finite");
-        largest = std::max(largest, std::fabs(value));
     }
-    int e = 0;
-    if (largest == 0 || (std::frexp(largest, &e), e < -1000)) return {};
-    if (std::round(std::ldexp(largest, 30 - e)) == 1 << 30) e++;
-    if (e > 1000) throw Error(what, "a number is too large");
-    Row row;
-    row.e = static_cast<int16_t>(e);
-    for (size_t k = 0; k < 4; k++) row.m[k] = static_cast<int32_t>(std::round(std::ldexp(values[k], 30 - e)));
+    /* the first three share an exponent, the last has its own */
+    const auto round_part = [&](size_t first, size_t end, int16_t &exponent) {
+        double largest = 0;
+        for (size_t k = first; k < end; k++) largest = std::max(largest, std::fabs(values[k]));
+        int e = 0;
+        if (largest == 0 || (std::frexp(largest, &e), e < -1000)) return;
+        if (std::round(std::ldexp(largest, 30 - e)) == 1 << 30) e++;
+        if (e > 1000) throw Error(what, "a number is too large");
+        exponent = static_cast<int16_t>(e);
+        for (size_t k = first; k < end; k++)
+            row.m[k] = static_cast<int32_t>(std::round(std::ldexp(values[k], 30 - e)));
+    };
+    round_part(0, 3, row.e);
+    round_part(3, 4, row.e_last);
     return row;
 }
 

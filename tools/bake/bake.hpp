@@ -18,10 +18,10 @@ struct Options {
     int key_interval = 32;                         /* milliseconds, 1 to 65535 */
 };
 
-/* Four numbers with one exponent: value k = m[k] * 2^(e - 30). */
+/* A row of docs/scene-format.md: three numbers m[k] * 2^(e - 30), a fourth with e_last. */
 struct Row {
     std::array<int32_t, 4> m = {};
-    int16_t e = 0;
+    int16_t e = 0, e_last = 0;
     double value(size_t k) const;
 };
 

@@ -26,7 +26,7 @@ class Bytes
     void row(const Row &row)
     {
         for (int32_t m : row.m) i32(m);
-        i16(row.e), u16(0);
+        i16(row.e), i16(row.e_last);
     }
     void matrix(const Matrix &matrix)
     {
