@@ -9,7 +9,8 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)
 LIBRARY = os.path.join(os.path.dirname(os.environ.get("EW_BIN", "build/release/bin")), "libedgewalk.a")
 CROSS = [("arm-none-eabi-", ["-mcpu=cortex-m0plus", "-mthumb"], r"__(aeabi|gnu_thumb1)_\w+|__clzsi2"),
          ("arm-none-eabi-", ["-mcpu=cortex-m3", "-mthumb"], r"__aeabi_\w+|__clzsi2"),
-         ("riscv64-unknown-elf-", ["-march=rv32imc", "-mabi=ilp32"], r"__\w+[sd]i\d")]
+         ("riscv64-unknown-elf-", ["-march=rv32imc", "-mabi=ilp32"], r"__\w+[sd]i\d"),
+         ("avr-", ["-mmcu=atmega2560"], r"__\w+|memmove")]  # where int has 16 bits
 
 
 def symbols(archive, nm="nm"):
@@ -94,7 +95,7 @@ class Library(unittest.TestCase):
                                       and not re.fullmatch(helpers, n)}, set())
                     built += 1
         if not built:
-            self.skipTest("no cross compiler (Debian: gcc-arm-none-eabi, gcc-riscv64-unknown-elf)")
+            self.skipTest("no cross compiler (Debian: gcc-arm-none-eabi, gcc-riscv64-unknown-elf, gcc-avr)")
 
 
 if __name__ == "__main__":

@@ -23,9 +23,10 @@
 enum {
     EW_TARGET_MAX = 4096,      /* pixels across and down                                   */
     EW_TEXTURE_LOG2_MAX = 11,  /* 2048 texels                                              */
-    EW_TOLERANCE_MAX = 256,    /* 16 px                                                    */
-    EW_GUARD_PX = 131072       /* screen positions: |x|, |y| <= 2^17 px                    */
+    EW_TOLERANCE_MAX = 256     /* 16 px                                                    */
 };
+/* Screen positions: |x|, |y| <= 2^17 px. Not an enumerator: int may have 16 bits. */
+#define EW_GUARD_PX INT32_C(131072)
 
 typedef struct ew_target {
     uint16_t *colour; /* RGB565                                                           */

@@ -134,7 +134,7 @@ static void put_op(ew_stream_encoder *encoder)
     srl_op op = choose_op(&encoder->frame, encoder->cursor);
     if (op.count > OP_SHORT_MOST) {
         uint16_t beyond = (uint16_t)(op.count - OP_LONG_LEAST); /* < 2^13 */
-        put_byte(encoder, (uint8_t)(OP_LONG | (op.kind == OP_RUN ? OP_LONG_RUN : 0) | (beyond >> 8)));
+        put_byte(encoder, (uint8_t)((unsigned)(OP_LONG | (op.kind == OP_RUN ? OP_LONG_RUN : 0)) | beyond >> 8));
         put_byte(encoder, (uint8_t)(beyond & 0xFF));
     } else {
         put_byte(encoder, (uint8_t)(op.kind | (op.count - 1)));

@@ -38,7 +38,7 @@ static clip_unit choose_unit(const ew_transform *t)
 }
 
 /* A little inside of EW_GUARD_PX: a cut corner is off by less than a pixel. */
-enum { GUARD = EW_GUARD_PX - 1 };
+static const int32_t GUARD = EW_GUARD_PX - 1;
 
 enum { PLANE_NEAR, PLANE_LEFT, PLANE_RIGHT, PLANE_TOP, PLANE_BOTTOM, PLANE_COUNT };
 

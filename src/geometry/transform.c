@@ -119,7 +119,7 @@ void ew_project(ew_screen_vertex *out, const ew_transform *t, const ew_homogeneo
     uint64_t w = shift > 62 ? 0 : (product + ((uint64_t)1 << (shift - 1))) >> shift;
     out->w = w < 1 ? 1 : w > 0x80000000u ? 0x80000000u : (uint32_t)w;
 
-    const int32_t guard = (int32_t)EW_GUARD_PX * 4096;
+    const int32_t guard = EW_GUARD_PX * 4096;
     uint8_t code = 0;
     if (out->x > guard || out->x < -guard || out->y > guard || out->y < -guard) code |= EW_OUT_GUARD;
     const ew_viewport *view = &t->viewport;

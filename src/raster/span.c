@@ -151,7 +151,7 @@ void ew_span(const ew_raster *raster, const ew_triangle *t, int32_t x, int32_t y
     /* w is linear, so the two ends say whether any pixel's depth needs clamping. */
     uint64_t end = s.w + s.dw * (uint64_t)(n - 1);
     uint32_t first = (uint32_t)(wide ? s.w >> 32 : s.w), last = (uint32_t)(wide ? end >> 32 : end);
-    int in_range = first >= 1u << 15 && first <= INT32_MAX && last >= 1u << 15 && last <= INT32_MAX;
+    int in_range = first >= 32768u && first <= INT32_MAX && last >= 32768u && last <= INT32_MAX;
     if (in_range) span_by_rung(raster, t, &s, 0);
     else span_by_rung(raster, t, &s, 1);
 }

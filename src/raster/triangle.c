@@ -282,7 +282,7 @@ static int in_range(const ew_raster_vertex *v)
 {
     const uint32_t guard = (uint32_t)EW_GUARD_PX * 4096u; /* 2^29 */
     return ew_abs32(v->x) <= guard && ew_abs32(v->y) <= guard && v->w > 0 && v->w <= 0x80000000u &&
-           ew_abs32(v->u) <= 1u << 30 && ew_abs32(v->v) <= 1u << 30;
+           ew_abs32(v->u) <= UINT32_C(1) << 30 && ew_abs32(v->v) <= UINT32_C(1) << 30;
 }
 
 int ew_raster_triangle(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_vertex *b,

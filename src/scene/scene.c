@@ -8,7 +8,8 @@
 #endif
 typedef char ew_vertex16_is_ten_bytes[sizeof(ew_vertex16) == 10 ? 1 : -1];
 
-enum { HEADER_BYTES = 32, ENTRY_BYTES = 16, MAX_SECTIONS = 32, ROW_BYTES = 20, MANTISSA_LIMIT = 1 << 30 };
+enum { HEADER_BYTES = 32, ENTRY_BYTES = 16, MAX_SECTIONS = 32, ROW_BYTES = 20 };
+#define MANTISSA_LIMIT (INT32_C(1) << 30)
 
 typedef struct section_rule {
     char tag[5];

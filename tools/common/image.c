@@ -164,7 +164,7 @@ int ew_apng_add(ew_apng *a, const uint16_t *rgb565)
     }
     fill_rows(a, rgb565);
     uLongf size = a->deflated_room;
-    if (compress2(a->deflated + 4, &size, a->rows, (uLong)(row_bytes(a) * a->height), 9) != Z_OK) {
+    if (compress2(a->deflated + 4, &size, a->rows, (uLong)(row_bytes(a) * a->height), 6) != Z_OK) {
         complain(a->tool, a->path, "zlib failed");
         a->failed = 1;
         return -1;
