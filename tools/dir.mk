@@ -9,6 +9,7 @@ $(BIN)/ew-render: $(B)/tools/render/render.o $(COMMON_OBJS) $(LIB)
 include tools/bake/dir.mk
 include tools/stream/dir.mk
 include tools/lab/dir.mk
+include tools/cycles/dir.mk
 
 setup-demo setup-test setup-lab: setup-%:  ## install what `make demo`, test or lab-test needs
 	@SETUP=$(SETUP) tools/setup/setup.sh $*
