@@ -151,13 +151,13 @@ static void mark_exact(const ew_raster *raster, const ref_triangle *truth, int *
     }
 }
 
-/* Difference of texture coordinates: core's are modulo 2^32 / 4096. */
-static double uv_error(ew_q20_12 core, double exact)
+/* Difference of texture coordinates: the core's are modulo the texture's size. */
+static double uv_error(ew_q20_12 core, double exact, int log2_size)
 {
-    return remainder(ldexp(core, -12) - exact, 1 << 20);
+    return remainder(ldexp(core, -12) - exact, ldexp(1, log2_size));
 }
 
-static void judge_fragment(const logged_fragment *f, const ref_triangle *truth, double tolerance)
+static void judge_fragment(const logged_fragment *f, const ref_triangle *truth, const ew_raster *raster)
 {
     now.m.fragments++;
     now.m.rung[f->rung]++;
@@ -178,12 +178,12 @@ static void judge_fragment(const logged_fragment *f, const ref_triangle *truth, 
         now.m.saturated++;
     }
     if (f->rung == EW_RUNG_CONSTANT) return;
-    double eu = uv_error(f->u, s.u), ev = uv_error(f->v, s.v);
+    double eu = uv_error(f->u, s.u, raster->texture.log2_width), ev = uv_error(f->v, s.v, raster->texture.log2_height);
     now.m.textured++;
     now.m.u_max = fmax(now.m.u_max, fabs(eu));
     now.m.v_max = fmax(now.m.v_max, fabs(ev));
     double low[2], high[2];
-    attribute_range(truth, f->x + 0.5, f->y + 0.5, tolerance + 1.0 / 256, low, high);
+    attribute_range(truth, f->x + 0.5, f->y + 0.5, raster->material.tolerance / 16.0 + 1.0 / 256, low, high);
     now.m.uv_off = fmax(now.m.uv_off, fmax(s.u + eu - high[0], low[0] - (s.u + eu)));
     now.m.uv_off = fmax(now.m.uv_off, fmax(s.v + ev - high[1], low[1] - (s.v + ev)));
     now.u_sum += eu * eu;
@@ -221,7 +221,7 @@ static void judge_triangle(const ew_raster *raster, const ref_triangle *truth)
     mark_exact(raster, truth, box);
     for (size_t i = 0; i < now.fragments; i++) {
         const logged_fragment *f = &now.fragment[i];
-        judge_fragment(f, truth, raster->material.tolerance / 16.0);
+        judge_fragment(f, truth, raster);
         box[0] = f->x < box[0] ? f->x : box[0], box[1] = f->y < box[1] ? f->y : box[1];
         box[2] = f->x > box[2] ? f->x : box[2], box[3] = f->y > box[3] ? f->y : box[3];
     }

@@ -93,6 +93,20 @@ static void table_rung(void **state)
     }
 }
 
+/* Runs use their tolerance: with twice of it they may not, or the bound would be loose. */
+static void runs_keep_their_tolerance_and_use_it(void **state)
+{
+    (void)state;
+    for (uint16_t tolerance = 1; tolerance <= 32; tolerance = (uint16_t)(2 * tolerance)) {
+        measures m = draw('D', EW_RUNG_RUNS, tolerance);
+        hold('D', &m);
+        test_context("tolerance %d/16: %.4f texels beyond, v rms %.4f", tolerance, m.uv_off, m.v_rms);
+        assert_true(m.uv_off <= 1.0 / 64);
+        /* v changes by up to 9 texels from pixel to pixel here; rms displacement is 0.2 of t and more */
+        assert_true(m.v_rms > 0.02 * tolerance);
+    }
+}
+
 static void tolerance_zero_is_exact(void **state)
 {
     (void)state;
@@ -103,8 +117,8 @@ static void tolerance_zero_is_exact(void **state)
     }
 }
 
-/* Colours are held to the disc of the tolerance (measure_end); affine triangles appear as
- * the tolerance grows, on the sphere's small triangles only. */
+/* Values and colours are held to the disc of the tolerance; affine triangles appear as the
+ * tolerance grows, on the sphere's small triangles only, runs everywhere else. */
 static void automatic_choice_keeps_its_tolerance(void **state)
 {
     (void)state;
@@ -114,6 +128,8 @@ static void automatic_choice_keeps_its_tolerance(void **state)
         for (char name = 'A'; name <= 'E'; name++) {
             measures m = draw(name, EW_RUNG_AUTO, tolerances[k]);
             hold(name, &m);
+            assert_true(m.uv_off <= 1.0 / 64);
+            assert_int_equal(m.rung[EW_RUNG_AFFINE] + m.rung[EW_RUNG_RUNS], m.fragments);
             if (name != 'B') {
                 assert_int_equal(m.rung[EW_RUNG_AFFINE], 0);
                 continue;
@@ -192,7 +208,7 @@ static void print_all(void)
         const char *name;
         ew_rung rung;
         uint16_t tolerance;
-    } rows[] = { { "exact", EW_RUNG_EXACT, 0 }, { "table", EW_RUNG_TABLE, 0 },   { "affine", EW_RUNG_AFFINE, 0 },
+    } rows[] = { { "exact", EW_RUNG_EXACT, 0 }, { "table", EW_RUNG_TABLE, 0 },   { "affine", EW_RUNG_AFFINE, 0 }, { "runs 1/4 px", EW_RUNG_RUNS, 4 },
                  { "auto 1/16 px", EW_RUNG_AUTO, 1 }, { "auto 1/4 px", EW_RUNG_AUTO, 4 },
                  { "auto 1 px", EW_RUNG_AUTO, 16 } };
     measure_print_heading();
@@ -215,6 +231,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(exact_rung),
         TEST(table_rung),
+        TEST(runs_keep_their_tolerance_and_use_it),
         TEST(tolerance_zero_is_exact),
         TEST(automatic_choice_keeps_its_tolerance),
         TEST(affine_is_noticed),

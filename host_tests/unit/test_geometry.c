@@ -62,7 +62,8 @@ static measures draw_random(const picture *p)
     const ew_viewport viewport = { 0, 0, W, H };
     const ref_camera eye = { fx / 65536.0, fy / 65536.0, value(n.m, n.e), 0, 0, W, H };
     const ew_texture texture = { texels, 4, 4 };
-    const ew_material material = { &texture, 0, 0, EW_RUNG_AUTO, EW_DOUBLE_SIDED };
+    static const uint16_t tolerances[4] = { 0, 1, 4, 16 };
+    const ew_material material = { &texture, 0, tolerances[test_random() & 3], EW_RUNG_AUTO, EW_DOUBLE_SIDED };
 
     assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
     assert_int_equal(ew_raster_set_material(&raster, &material), EW_OK);

@@ -49,6 +49,7 @@ typedef struct ew_texture {
 typedef enum ew_rung {
     EW_RUNG_AUTO = 0,  /* the cheapest of the others that keeps the material's tolerance    */
     EW_RUNG_AFFINE,    /* linear on the screen                                              */
+    EW_RUNG_RUNS,      /* linear in runs, as long as the material's tolerance allows         */
     EW_RUNG_TABLE,     /* a table reciprocal for each pixel                                 */
     EW_RUNG_EXACT,     /* the same with a Newton step                                       */
     EW_RUNG_CONSTANT   /* the material's colour: what is drawn without a texture            */
@@ -108,9 +109,14 @@ void ew_raster_clear(ew_raster *raster, uint16_t rgb565);
 int ew_raster_triangle(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_vertex *b,
                        const ew_raster_vertex *c);
 
+/* The same for corners that are in range already, as those of the geometry layer are: that
+ * is the caller's promise, and not checked. */
+int ew_raster_triangle_in_range(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_vertex *b,
+                                const ew_raster_vertex *c);
+
 #if EW_TRACE
-/* For tests: what was set up, and every fragment before its depth test. u and v in texels
- * are meaningful with a texture only. Defined by whoever builds with EW_TRACE = 1. */
+/* For tests: what was set up, and every fragment before its depth test. u and v are modulo
+ * the texture's size and meaningful with a texture only. Defined by whoever builds with EW_TRACE = 1. */
 void ew_trace_triangle(const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *c,
                        int rung);
 void ew_trace_fragment(uint16_t x, uint16_t y, uint16_t depth, ew_q20_12 u, ew_q20_12 v);

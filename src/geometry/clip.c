@@ -143,12 +143,22 @@ static int draw_clipped(ew_geometry *g, const ew_vertex16 *const corner[3],
         }
         corner_from(&fan[i < 2 ? i : 2], &made, p->u, p->v);
         if (i < 2) continue;
-        int result = ew_raster_triangle(g->raster, &fan[0], &fan[1], &fan[2]);
+        int result = ew_raster_triangle_in_range(g->raster, &fan[0], &fan[1], &fan[2]);
         if (result < 0) return result;
         drawn |= result;
         fan[1] = fan[2];
     }
     return drawn;
+}
+
+/* Whether the triangle of the snapped corners is a front: its area negative. Most of a
+ * closed model is decided here, before anything is set up. */
+static int faces_the_eye(const ew_screen_vertex *const v[3])
+{
+    int32_t x0 = ew_snapped_from_q20_12(v[0]->x), y0 = ew_snapped_from_q20_12(v[0]->y);
+    int32_t dx1 = ew_snapped_from_q20_12(v[1]->x) - x0, dy1 = ew_snapped_from_q20_12(v[1]->y) - y0;
+    int32_t dx2 = ew_snapped_from_q20_12(v[2]->x) - x0, dy2 = ew_snapped_from_q20_12(v[2]->y) - y0;
+    return ew_mul_s32(dx1, dy2) < ew_mul_s32(dx2, dy1); /* |d| <= 2^26 */
 }
 
 void ew_geometry_init(ew_geometry *geometry, ew_raster *raster) { geometry->raster = raster; }
@@ -158,6 +168,7 @@ int32_t ew_draw_triangles(ew_geometry *geometry, const ew_vertex16 *vertices,
                           uint32_t index_count, uint8_t uv_fraction_bits)
 {
     int uv_shift = 12 - uv_fraction_bits; /* |u| 2^12 < 2^28 */
+    const int one_sided = !(geometry->raster->material.flags & EW_DOUBLE_SIDED);
     int32_t drawn = 0;
     for (uint32_t i = 0; i + 2 < index_count; i += 3) {
         const ew_vertex16 *corner[3];
@@ -175,12 +186,13 @@ int32_t ew_draw_triangles(ew_geometry *geometry, const ew_vertex16 *vertices,
         if (any & (EW_OUT_NEAR | EW_OUT_GUARD)) {
             result = draw_clipped(geometry, corner, on_screen, uv_shift);
         } else {
+            if (one_sided && !faces_the_eye(on_screen)) continue;
             ew_raster_vertex v[3];
             for (int k = 0; k < 3; k++) {
                 corner_from(&v[k], on_screen[k], corner[k]->u * ((int32_t)1 << uv_shift),
                             corner[k]->v * ((int32_t)1 << uv_shift));
             }
-            result = ew_raster_triangle(geometry->raster, &v[0], &v[1], &v[2]);
+            result = ew_raster_triangle_in_range(geometry->raster, &v[0], &v[1], &v[2]);
         }
         if (result < 0) return result;
         drawn += result;

@@ -1,12 +1,14 @@
-/* Spans: what is done for each pixel.
+/* Spans: what is done for each pixel, and how u and v get there.
  *
- * One definition, span_loop, is specialised by its constant arguments into the few loops
- * that exist: colour or texture by rung, with depth in range or clamped.
+ * A span is drawn in runs: pieces over which u and v are linear. The affine rung makes one
+ * run of it, the bound (docs/error-bound.md) as few as the tolerance allows, the table and
+ * exact rungs one for each pixel. A run is filled by one of two loops: `fill_textured` for
+ * the common case, `fill_any` for every other combination of material and target.
  *
- * w and the two texture quantities step in 32 bits. A step is off by at most half a unit,
- * so the last of 4,096 pixels is off by 2^11 units of 2^-31 in w: 1/16 of a depth unit.
- * The exact rung steps in 64 bits: where 1/z falls to a small part of its largest value
- * along a span, u and v would otherwise feel those units as often enlarged.
+ * 1/z and the texture quantities are taken as 32 bits at the span's first pixel and step
+ * from there: a step is off by at most half a unit, so 4,096 pixels from the plane's column
+ * a value is off by 2^11 units of 2^-31 in w, 1/16 of a depth unit. The exact rung, for
+ * which u and v may fall from that to a small part of themselves, takes 64 bits.
  */
 #include "triangle.h"
 
@@ -16,142 +18,283 @@
 #define ALWAYS_INLINE static inline
 #endif
 
-/* What a span's loop reads and changes. */
-typedef struct span {
-    uint16_t *colour, *depth;
-    int32_t n;
-    uint64_t w, dw, u, du, v, dv; /* wide or not: plane_start */
+/* Where the next pixel goes, and its 1/z. */
+typedef struct cursor {
+    uint16_t *colour, *depth; /* depth may be NULL */
+    uint32_t w, dw;
 #if EW_TRACE
     uint16_t x, y;
 #endif
-} span;
+} cursor;
 
-/* The value `columns` pixels right of the plane's own, and the step to the next pixel; where
- * not wide, their upper halves, the step rounded. */
-ALWAYS_INLINE uint64_t plane_start(const ew_plane *p, int32_t columns, int wide)
-{
-    uint64_t start = p->row + ew_wrap_mul64(p->dx, columns);
-    return wide ? start : start >> 32;
-}
-ALWAYS_INLINE uint64_t plane_step(const ew_plane *p, int wide)
-{
-    return wide ? p->dx : (p->dx + 0x80000000u) >> 32;
-}
+/* u and v of the next pixel and what they grow by, top-aligned: 2^32 is the texture's
+ * width or height, so that repeating is the wrapping of 32 bits. */
+typedef struct texture_run {
+    uint32_t u, du, v, dv;
+} texture_run;
 
-/* near/z to a stored depth. */
-ALWAYS_INLINE uint16_t depth_from_w(uint32_t w, int clamped)
+/* floor(a / 2^(32 - log2 of the size)): the texel; sizes of one texel shift by 32. */
+ALWAYS_INLINE uint32_t texel_of(uint32_t a, int log2_size) { return a >> 1 >> (31 - log2_size); }
+
+#if EW_TRACE
+static void trace(const ew_raster *raster, cursor *at, uint16_t d, uint32_t u, uint32_t v)
 {
-    uint32_t d = w >> 15;
-    if (clamped) {
+    /* q20.12, modulo the texture's size */
+    ew_trace_fragment(at->x, at->y, d, (ew_q20_12)(u >> (20 - raster->texture.log2_width)),
+                      (ew_q20_12)(v >> (20 - raster->texture.log2_height)));
+    at->x++;
+}
+#endif
+
+/* ---- the loops ---- */
+
+/* Every combination: depth tested, written, clamped or absent; textured or one colour. */
+static void fill_any(const ew_raster *raster, cursor *at, const texture_run *run, int32_t n)
+{
+    const ew_texture *t = &raster->texture;
+    const int test = at->depth && !(raster->material.flags & EW_NO_DEPTH_TEST);
+    const int write = at->depth && !(raster->material.flags & EW_NO_DEPTH_WRITE);
+    uint32_t u = run->u, v = run->v;
+    uint16_t pixel = raster->material.colour;
+    for (int32_t i = 0; i < n; i++) {
+        uint32_t d = at->w >> 15;
         if (d < 1) d = 1;
         if (d > 65535) d = 65535;
+#if EW_TRACE
+        trace(raster, at, (uint16_t)d, u, v);
+#endif
+        if (!test || d > at->depth[i]) {
+            if (write) at->depth[i] = (uint16_t)d;
+            if (t->texels) pixel = t->texels[texel_of(v, t->log2_height) << t->log2_width | texel_of(u, t->log2_width)];
+            at->colour[i] = pixel;
+        }
+        at->w += at->dw;
+        u += run->du;
+        v += run->dv;
     }
-    return (uint16_t)d;
+    at->colour += n;
+    if (at->depth) at->depth += n;
 }
 
-/* For the few spans with w near 0 or 1, where a step's rounding could carry it out of what
- * the set-up allowed for: 1 <= w < 2^(32 - lead), so that nothing is shifted too far. */
-ALWAYS_INLINE uint32_t w_in_range(uint32_t w, int lead)
+/* Depth tested and written and inside its range, texture of at most 2^16 texels (t->plain),
+ * n at most FAST_RUN. u and v share 64 bits: from the top u's texel and fraction, v's texel, v's
+ * fraction. One addition steps both, one rotation brings the texel number together; what
+ * v's texel carries goes into u's fraction, FAST_RUN times 2^-16 texel at most. */
+enum { FAST_RUN = 512 };
+
+ALWAYS_INLINE uint64_t packed(uint32_t u, uint32_t v, int log2_height)
 {
-    uint32_t top = 0xFFFFFFFFu >> lead;
-    return w < 1 ? 1 : w > top ? top : w;
+    uint32_t low = ((uint32_t)1 << log2_height) - 1u;
+    uint64_t both = (uint64_t)v << log2_height; /* v's texel above 32 bits of fraction */
+    return ((uint64_t)(u & ~low) << 32) + both;
 }
 
-/* u = (u/z) / (1/z): the quantity is normalised together with w, so that the product of
- * its 30 bits with the 31-bit reciprocal always has the same scale. */
-ALWAYS_INLINE int32_t over_w(uint32_t uw, int lead, uint32_t reciprocal, int shift)
-{
-    int32_t normalised = (int32_t)(uw << lead); /* |.| < 2^31: triangle.c leaves the room */
-    return EW_ASR(ew_mulh_s32(normalised, (int32_t)reciprocal), shift);
-}
-
-ALWAYS_INLINE void span_loop(const ew_raster *raster, const ew_triangle *t, span *s, const int rung,
-                             const int clamped)
+static void fill_textured(const ew_raster *raster, cursor *at, const texture_run *run, int32_t n)
 {
     const uint16_t *texels = raster->texture.texels;
-    const uint32_t u_mask = ((uint32_t)1 << raster->texture.log2_width) - 1u;
-    const uint32_t v_mask = ((uint32_t)1 << raster->texture.log2_height) - 1u;
-    const int row_shift = raster->texture.log2_width;
-    const int shift = t->uv_shift;
-    const int test = s->depth && !(raster->material.flags & EW_NO_DEPTH_TEST);
-    const int write = s->depth && !(raster->material.flags & EW_NO_DEPTH_WRITE);
-    uint16_t pixel = raster->material.colour;
-
-    /* wide: the planes' 64 bits; else their upper halves alone */
-    const int wide = rung == EW_RUNG_EXACT;
-    const uint32_t dw = (uint32_t)s->dw, du = (uint32_t)s->du, dv = (uint32_t)s->dv;
-    uint32_t w = (uint32_t)s->w, uw = (uint32_t)s->u, vw = (uint32_t)s->v;
-
-    for (int32_t i = 0; i < s->n; i++) {
-        if (wide) w = (uint32_t)(s->w >> 32), uw = (uint32_t)(s->u >> 32), vw = (uint32_t)(s->v >> 32);
-        uint16_t d = depth_from_w(w, clamped);
-        int32_t u = 0, v = 0;
-        int visible = !test || d > s->depth[i];
-        if (rung != EW_RUNG_CONSTANT && (visible || EW_TRACE)) {
-            if (rung == EW_RUNG_AFFINE) {
-                u = EW_ASR((int32_t)uw, shift);
-                v = EW_ASR((int32_t)vw, shift);
-            } else {
-                uint32_t divisor = clamped ? w_in_range(w, t->w_lead) : w;
-                int zeros = ew_clz32(divisor), lead = zeros - t->w_lead;
-                uint32_t m = divisor << zeros;
-                uint32_t r = rung == EW_RUNG_EXACT ? ew_recip_newton(m) : ew_recip_table(m);
-                u = over_w(uw, lead, r, shift);
-                v = over_w(vw, lead, r, shift);
-            }
-            u = ew_wrap_add32(u, t->u_base);
-            v = ew_wrap_add32(v, t->v_base);
-            pixel = texels[(((uint32_t)EW_ASR(v, 12) & v_mask) << row_shift) +
-                           ((uint32_t)EW_ASR(u, 12) & u_mask)];
-        }
+    const int log2_height = raster->texture.log2_height, turn = 32 - raster->texture.log2_width;
+    const uint32_t mask = ((uint32_t)1 << (raster->texture.log2_width + log2_height)) - 1u;
+    uint64_t p = packed(run->u, run->v, log2_height);
+    /* v's step has a sign: extended over u's bits, or the sum would lose a borrow */
+    const uint64_t dp = ((uint64_t)(run->du & ~(((uint32_t)1 << log2_height) - 1u)) << 32) +
+                        (uint64_t)((int64_t)(int32_t)run->dv * ((int64_t)1 << log2_height));
+    uint16_t *z = at->depth, *c = at->colour;
+    uint16_t *const end = z + n;
+    uint32_t w = at->w;
+    const uint32_t dw = at->dw;
+    do {
+        uint32_t d = w >> 15, high = (uint32_t)(p >> 32);
 #if EW_TRACE
-        ew_trace_fragment((uint16_t)(s->x + i), s->y, d, u, v);
+        trace(raster, at, (uint16_t)d, high, (high << (32 - log2_height)) | (uint32_t)(p & 0xFFFFFFFFu) >> log2_height);
 #endif
-        if (visible) {
-            if (write) s->depth[i] = d;
-            s->colour[i] = pixel;
+        if (d > *z) {
+            *z = (uint16_t)d;
+            *c = texels[(high << (32 - turn) | high >> turn) & mask];
         }
-        if (wide) s->w += s->dw, s->u += s->du, s->v += s->dv;
-        else w += dw, uw += du, vw += dv; /* what a rung does not use, the compiler leaves out */
+        w += dw;
+        p += dp;
+        c++;
+    } while (++z != end);
+    at->w = w;
+    at->depth = z;
+    at->colour = c;
+}
+
+/* 1/z is linear: the first pixel's and the last's say whether any in between leaves depth's
+ * range. */
+ALWAYS_INLINE int is_plain(const ew_triangle *t, uint32_t w, uint32_t dw, int32_t n)
+{
+    if (t->plain != PLAIN_SOMETIMES) return t->plain;
+    uint32_t last = w + dw * (uint32_t)(n - 1);
+    return w >= 32768u && w <= INT32_MAX && last >= 32768u && last <= INT32_MAX;
+}
+
+ALWAYS_INLINE void fill(const ew_raster *raster, cursor *at, const texture_run *run, int32_t n, int plain)
+{
+    if (plain) fill_textured(raster, at, run, n);
+    else fill_any(raster, at, run, n);
+}
+
+/* ---- u and v at a pixel ---- */
+
+/* (u/z) / (1/z) with EW_UV_FRACTION(triangle) fraction bits: the quantity is normalised
+ * together with w, so that its product with the reciprocal always has the same scale. */
+ALWAYS_INLINE int32_t over_w(uint32_t uw, int lead, uint32_t reciprocal)
+{
+    return ew_mulh_s32((int32_t)(uw << lead), (int32_t)reciprocal); /* |uw << lead| < 2^31: triangle.c leaves the room */
+}
+
+/* A divisor made ready: 1/w. */
+typedef struct divisor {
+    uint32_t reciprocal;
+    int lead;
+} divisor;
+
+/* w is brought into the range that the set-up allowed for, 1 <= w < 2^(32 - w_lead): the
+ * rounding of steps may carry a value near 0 out of it. */
+ALWAYS_INLINE divisor divisor_of(const ew_triangle *t, uint32_t w, int newton)
+{
+    uint32_t top = 0xFFFFFFFFu >> t->w_lead;
+    if (w < 1) w = 1;
+    if (w > top) w = top;
+    int zeros = ew_clz32(w);
+    divisor d;
+    d.reciprocal = newton ? ew_recip_newton(w << zeros) : ew_recip_table(w << zeros);
+    d.lead = zeros - t->w_lead;
+    return d;
+}
+
+/* u with its fraction bits, top-aligned, the first corner's added. */
+ALWAYS_INLINE uint32_t top_aligned(int32_t u, int shift, uint32_t base) { return ((uint32_t)u << shift) + base; }
+
+/* ---- runs ---- */
+
+/* One run for each pixel. */
+static void span_per_pixel(const ew_raster *raster, const ew_triangle *t, cursor *at, uint64_t w, uint64_t uw,
+                           uint64_t vw, int32_t n)
+{
+    const int newton = t->rung == EW_RUNG_EXACT;
+    const ew_texture *texture = &raster->texture;
+    texture_run run = { 0, 0, 0, 0 };
+    at->dw = 0;
+    int plain = is_plain(t, (uint32_t)(w >> 32), t->w.step, n);
+    for (; n > 0; n--, w += t->w.dx, uw += t->u.dx, vw += t->v.dx) {
+        at->w = (uint32_t)(w >> 32);
+        uint32_t depth = at->w >> 15;
+        if (plain && depth <= *at->depth && !EW_TRACE) {
+            at->depth++;
+            at->colour++;
+            continue;
+        }
+        divisor d = divisor_of(t, at->w, newton);
+        run.u = top_aligned(over_w((uint32_t)(uw >> 32), d.lead, d.reciprocal), t->u_shift, t->u_base);
+        run.v = top_aligned(over_w((uint32_t)(vw >> 32), d.lead, d.reciprocal), t->v_shift, t->v_base);
+        if (plain && !EW_TRACE) {
+            *at->depth++ = (uint16_t)depth;
+            *at->colour++ = texture->texels[texel_of(run.v, texture->log2_height) << texture->log2_width |
+                                            texel_of(run.u, texture->log2_width)];
+        } else {
+            fill_any(raster, at, &run, 1);
+        }
     }
 }
 
-ALWAYS_INLINE void span_by_rung(const ew_raster *raster, const ew_triangle *t, span *s, const int clamped)
+/* The longest run, as a power of two, that the bound allows from a pixel with 1/z = w:
+ * the largest k with t->run_floor 4^k <= min(w, w + 2^k dw). */
+ALWAYS_INLINE int run_log2(const ew_triangle *t, uint32_t w, uint32_t dw)
 {
-    switch (t->rung) {
-    case EW_RUNG_CONSTANT: span_loop(raster, t, s, EW_RUNG_CONSTANT, clamped); break;
-    case EW_RUNG_AFFINE: span_loop(raster, t, s, EW_RUNG_AFFINE, clamped); break;
-    case EW_RUNG_TABLE: span_loop(raster, t, s, EW_RUNG_TABLE, clamped); break;
-    default: span_loop(raster, t, s, EW_RUNG_EXACT, clamped); break;
+    enum { LONGEST = 9 }; /* FAST_RUN */
+    int k = (ew_clz32(t->run_floor) - ew_clz32(w)) >> 1;
+    if (k < 0) return 0;
+    if (k > LONGEST) k = LONGEST;
+    for (; k > 0; k--) {
+        uint32_t far_end = (int32_t)dw < 0 ? w + (dw << k) : w;
+        if (far_end <= w && far_end >> 2 * k >= t->run_floor) break;
     }
+    return k;
+}
+
+/* Runs chosen by the bound. Each is a chord: exact at its first pixel and at the next
+ * run's first; the last one's at the span's last pixel. */
+static void span_by_bound(const ew_raster *raster, const ew_triangle *t, cursor *at, uint32_t uw, uint32_t vw, int32_t n,
+                          int plain)
+{
+    const int newton = t->newton;
+    const uint32_t du = t->u.step, dv = t->v.step, dw = at->dw;
+    divisor d = divisor_of(t, at->w, newton);
+    int32_t u = over_w(uw, d.lead, d.reciprocal), v = over_w(vw, d.lead, d.reciprocal);
+    texture_run run;
+    for (;;) {
+        int k = dw == 0 ? 30 : run_log2(t, at->w, dw);
+        int32_t length = (int32_t)1 << k;
+        run.u = top_aligned(u, t->u_shift, t->u_base);
+        run.v = top_aligned(v, t->v_shift, t->v_base);
+        if (n <= length) break;
+        uw += du << k;
+        vw += dv << k;
+        d = divisor_of(t, at->w + (dw << k), newton);
+        int32_t u_end = over_w(uw, d.lead, d.reciprocal), v_end = over_w(vw, d.lead, d.reciprocal);
+        run.du = top_aligned(EW_ASR(u_end - u, k), t->u_shift, 0);
+        run.dv = top_aligned(EW_ASR(v_end - v, k), t->v_shift, 0);
+        fill(raster, at, &run, length, plain);
+        n -= length;
+        u = u_end;
+        v = v_end;
+    }
+    /* The chord to the last pixel without a division by n - 1:
+     * (u_last - u) / (n - 1) = (du/z - u d(1/z)) / (1/z at the last pixel). */
+    if (dw != 0 && n > 1) d = divisor_of(t, at->w + dw * (uint32_t)(n - 1), newton);
+    const int scale = 30 - t->w_lead; /* u = uw / w 2^scale */
+    int32_t turn_u = (int32_t)(du - (uint32_t)EW_ASR(ew_mul_s32(u, (int32_t)dw), scale));
+    int32_t turn_v = (int32_t)(dv - (uint32_t)EW_ASR(ew_mul_s32(v, (int32_t)dw), scale));
+    run.du = top_aligned(over_w((uint32_t)turn_u, d.lead, d.reciprocal), t->u_shift, 0);
+    run.dv = top_aligned(over_w((uint32_t)turn_v, d.lead, d.reciprocal), t->v_shift, 0);
+    for (; plain && n > FAST_RUN; n -= FAST_RUN) {
+        fill_textured(raster, at, &run, FAST_RUN);
+        run.u += run.du * (uint32_t)FAST_RUN;
+        run.v += run.dv * (uint32_t)FAST_RUN;
+    }
+    fill(raster, at, &run, n, plain);
 }
 
 void ew_span(const ew_raster *raster, const ew_triangle *t, int32_t x, int32_t y, int32_t n)
 {
-    span s;
     int32_t columns = x - t->column;
-    size_t at = (size_t)y * raster->target.stride + (size_t)x;
-    s.colour = raster->target.colour + at;
-    s.depth = raster->target.depth ? raster->target.depth + at : NULL;
-    s.n = n;
-    int wide = t->rung == EW_RUNG_EXACT;
-    s.w = plane_start(&t->w, columns, wide);
-    s.dw = plane_step(&t->w, wide);
-    s.u = s.v = s.du = s.dv = 0;
-    if (t->rung != EW_RUNG_CONSTANT) {
-        s.u = plane_start(&t->u, columns, wide);
-        s.du = plane_step(&t->u, wide);
-        s.v = plane_start(&t->v, columns, wide);
-        s.dv = plane_step(&t->v, wide);
-    }
+    size_t offset = (size_t)y * raster->target.stride + (size_t)x;
+    cursor at;
+    at.colour = raster->target.colour + offset;
+    at.depth = raster->target.depth ? raster->target.depth + offset : NULL;
 #if EW_TRACE
-    s.x = (uint16_t)x;
-    s.y = (uint16_t)y;
+    at.x = (uint16_t)x;
+    at.y = (uint16_t)y;
 #endif
-    /* w is linear, so the two ends say whether any pixel's depth needs clamping. */
-    uint64_t end = s.w + s.dw * (uint64_t)(n - 1);
-    uint32_t first = (uint32_t)(wide ? s.w >> 32 : s.w), last = (uint32_t)(wide ? end >> 32 : end);
-    int in_range = first >= 32768u && first <= INT32_MAX && last >= 32768u && last <= INT32_MAX;
-    if (in_range) span_by_rung(raster, t, &s, 0);
-    else span_by_rung(raster, t, &s, 1);
+    if (t->rung == EW_RUNG_EXACT || t->rung == EW_RUNG_TABLE) {
+        span_per_pixel(raster, t, &at, t->w.row + ew_wrap_mul64(t->w.dx, columns),
+                       t->u.row + ew_wrap_mul64(t->u.dx, columns), t->v.row + ew_wrap_mul64(t->v.dx, columns), n);
+        return;
+    }
+    at.w = (uint32_t)(t->w.row >> 32) + t->w.step * (uint32_t)columns;
+    at.dw = t->w.step;
+    texture_run run = { 0, 0, 0, 0 };
+    if (t->rung == EW_RUNG_CONSTANT) {
+        fill_any(raster, &at, &run, n);
+        return;
+    }
+    int plain = is_plain(t, at.w, at.dw, n);
+    uint32_t u = (uint32_t)(t->u.row >> 32) + t->u.step * (uint32_t)columns;
+    uint32_t v = (uint32_t)(t->v.row >> 32) + t->v.step * (uint32_t)columns;
+    if (t->rung == EW_RUNG_RUNS) {
+        span_by_bound(raster, t, &at, u, v, n, plain);
+        return;
+    }
+    run.du = top_aligned((int32_t)t->u.step, t->u_shift, 0);
+    run.dv = top_aligned((int32_t)t->v.step, t->v_shift, 0);
+    run.u = top_aligned((int32_t)u, t->u_shift, t->u_base);
+    run.v = top_aligned((int32_t)v, t->v_shift, t->v_base);
+    for (; n > FAST_RUN; n -= FAST_RUN) {
+        fill(raster, &at, &run, FAST_RUN, plain);
+        run.u += run.du * (uint32_t)FAST_RUN;
+        run.v += run.dv * (uint32_t)FAST_RUN;
+    }
+    fill(raster, &at, &run, n, plain);
 }

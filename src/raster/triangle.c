@@ -14,6 +14,9 @@
 
 #include "edge.h"
 
+static int32_t larger(int32_t a, int32_t b) { return a > b ? a : b; }
+static int32_t smaller(int32_t a, int32_t b) { return a < b ? a : b; }
+
 /* ---- planes ---- */
 
 /* Differences from corner 0, and the reciprocal of the doubled area. */
@@ -90,9 +93,13 @@ static void plane_init(ew_plane *p, const basis *b, uint32_t a0, const numerator
     p->row = ((uint64_t)a0 << 32) + ew_wrap_mul64(gx, b->to_x) + ew_wrap_mul64(gy, b->to_y);
     p->dx = gx << 12;
     p->dy = gy << 12;
+    p->step = (uint32_t)((p->dx + 0x80000000u) >> 32);
 }
 
-static void plane_to_row(ew_plane *p, int32_t rows) { p->row += ew_wrap_mul64(p->dy, rows); }
+static void plane_move(ew_plane *p, int32_t columns, int32_t rows)
+{
+    p->row += ew_wrap_mul64(p->dx, columns) + ew_wrap_mul64(p->dy, rows);
+}
 
 /* ---- the ladder ---- */
 
@@ -123,27 +130,47 @@ static int affine_suffices(const ew_raster_vertex *const v[3], uint32_t toleranc
     return 1;
 }
 
-static uint8_t choose_rung(const ew_raster *raster, const ew_raster_vertex *const v[3], uint32_t w_min,
-                           int uv_bits)
+static uint8_t choose_rung(const ew_raster *raster, const ew_raster_vertex *const v[3], uint32_t w_min)
 {
     const ew_material *m = &raster->material;
     if (!m->texture || m->rung == EW_RUNG_CONSTANT) return EW_RUNG_CONSTANT;
     if (m->rung != EW_RUNG_AUTO) return m->rung;
     if (affine_suffices(v, m->tolerance, w_min)) return EW_RUNG_AFFINE;
-    /* The table is off by 2^-17 of the distance to corner 0 with 256 entries or more, and by
-     * four times as much for each bit less: at most 1/256 texel for 2^TABLE_REACH / 4096. */
-    enum { TABLE_REACH = 12 + 9 - (EW_RECIP_BITS < 8 ? 2 * (8 - EW_RECIP_BITS) : 0) };
-    return m->tolerance > 0 && uv_bits <= TABLE_REACH ? EW_RUNG_TABLE : EW_RUNG_EXACT;
+    return m->tolerance > 0 ? EW_RUNG_RUNS : EW_RUNG_EXACT;
+}
+
+/* The least run_floor with |dw| 4^k <= 4 t w for every w >= run_floor 4^k: a run of 2^k
+ * pixels is displaced by at most 4^k |dw| / (4 w) px (docs/error-bound.md). Runs of one
+ * pixel are always allowed. */
+static uint32_t run_floor(uint32_t step, uint32_t tolerance)
+{
+    uint64_t least = (uint64_t)ew_abs32((int32_t)step) * 4u; /* 4 t = tolerance / 4 */
+    uint32_t rest, floor;
+    if (tolerance == 0 || least >> 32 >= tolerance) return 0xFFFFFFFFu;
+    floor = ew_udiv64_32(least, tolerance, &rest);
+    return rest ? floor + 1 : floor;
 }
 
 /* ---- texture quantities ---- */
 
-enum { UV_BITS = 29 }; /* |u/z|, |v/z| or |u|, |v| at the corners: room for twice that outside */
+/* Differences of u and v from corner 0 take 2^uv_bits units of q20.12, at least 2^UV_LEAST.
+ * u/z has UV_BITS bits of that at the corners, with room for as much again outside;
+ * divided by 1/z it has two bits fewer, and so has u itself on the affine rung. Then there
+ * are UV_MOST + 12 - uv_bits fraction bits: 12 to 20. */
+enum { UV_BITS = 29, UV_MOST = UV_BITS - 2, UV_LEAST = 19 };
+
+/* w is taken as a number of 8 bits at least, though at z = 2^23 near it has fewer. */
+enum { W_LEAD_MOST = 24 };
+
+/* The table is off by 2^-17 of the distance to corner 0 with 256 entries or more, and by
+ * four times as much for each bit less: at most 1/256 texel for differences of TABLE_REACH
+ * bits. */
+enum { TABLE_REACH = 12 + 9 - (EW_RECIP_BITS < 8 ? 2 * (8 - EW_RECIP_BITS) : 0) };
 
 /* d w / 2^w_bits, |d| < 2^uv_bits, with UV_BITS bits. */
 static int32_t times_w(int32_t d, uint32_t w, int uv_bits, int w_bits)
 {
-    int shift = uv_bits + w_bits - UV_BITS;          /* -29 to 30 */
+    int shift = uv_bits + w_bits - UV_BITS;          /* -2 to 30 */
     int64_t product = (int64_t)d * (int64_t)w;       /* < 2^59    */
     return (int32_t)(shift >= 0 ? EW_ASR(product, shift) : product * ((int64_t)1 << -shift));
 }
@@ -154,8 +181,8 @@ static void uv_differences(int32_t out[2], const ew_triangle *t, const ew_raster
                            int32_t d1, int32_t d2, int uv_bits)
 {
     if (t->rung == EW_RUNG_AFFINE) {
-        out[0] = d1 * ((int32_t)1 << (UV_BITS - uv_bits));
-        out[1] = d2 * ((int32_t)1 << (UV_BITS - uv_bits));
+        out[0] = d1 * ((int32_t)1 << (UV_MOST - uv_bits));
+        out[1] = d2 * ((int32_t)1 << (UV_MOST - uv_bits));
     } else {
         out[0] = times_w(d1, v[1]->w, uv_bits, 32 - t->w_lead);
         out[1] = times_w(d2, v[2]->w, uv_bits, 32 - t->w_lead);
@@ -163,6 +190,17 @@ static void uv_differences(int32_t out[2], const ew_triangle *t, const ew_raster
 }
 
 /* ---- set-up ---- */
+
+static uint8_t plainness(const ew_raster *raster, uint32_t w_min, uint32_t w_max)
+{
+    const ew_texture *texture = &raster->texture;
+    if (!raster->target.depth || (raster->material.flags & (EW_NO_DEPTH_TEST | EW_NO_DEPTH_WRITE)) ||
+        texture->log2_width < 1 || texture->log2_height < 1 || texture->log2_width + texture->log2_height > 16) {
+        return PLAIN_NEVER;
+    }
+    /* what lies outside of the corners, and steps' rounding: see w_lead */
+    return w_min >= 65536u && w_max <= 0x50000000u ? PLAIN_ALWAYS : PLAIN_SOMETIMES;
+}
 
 /* Rungs, planes and shifts for a triangle with snapped area != 0; planes stand on `row`.
  * Returns EW_OK or EW_ERR_RANGE. */
@@ -175,16 +213,20 @@ static int setup(ew_triangle *t, const ew_raster *raster, const ew_raster_vertex
     uint32_t reach = largest3(ew_abs32(du1), ew_abs32(du2), ew_abs32(dv1));
     reach = largest3(reach, ew_abs32(dv2), 0);
     int uv_bits = 32 - ew_clz32(reach);
+    if (uv_bits < UV_LEAST) uv_bits = UV_LEAST;
 
-    t->rung = choose_rung(raster, v, w_min, uv_bits);
-    if (t->rung != EW_RUNG_CONSTANT && uv_bits > 27) return EW_ERR_RANGE;
+    t->rung = choose_rung(raster, v, w_min);
+    if (t->rung != EW_RUNG_CONSTANT && uv_bits > UV_MOST) return EW_ERR_RANGE;
+    t->newton = uv_bits > TABLE_REACH;
     /* Outside of the corners w may exceed the largest by a quarter (stays_near, below), and by
      * the rounding of its steps: 2^11 units, another quarter wherever depth is not clamped. */
-    t->w_lead = (uint8_t)ew_clz32(w_max + w_max / 2);
-    /* u over w comes out as u 2^(27 - uv_bits) (span.c, over_w); affine as u 2^(29 - uv_bits). */
-    t->uv_shift = (uint8_t)((t->rung == EW_RUNG_AFFINE ? UV_BITS : UV_BITS - 2) - uv_bits);
-    t->u_base = v[0]->u;
-    t->v_base = v[0]->v;
+    t->w_lead = (uint8_t)smaller(ew_clz32(w_max + w_max / 2), W_LEAD_MOST);
+    /* 2^32 is the texture's size: texels are shifted by 32 - log2 of it, 21 at least */
+    int u_align = 32 - raster->texture.log2_width, v_align = 32 - raster->texture.log2_height;
+    t->u_shift = (uint8_t)(u_align - (UV_MOST + 12 - uv_bits));
+    t->v_shift = (uint8_t)(v_align - (UV_MOST + 12 - uv_bits));
+    t->u_base = (uint32_t)v[0]->u << (u_align - 12);
+    t->v_base = (uint32_t)v[0]->v << (v_align - 12);
 
     int32_t du[2], dv[2];
     int textured = t->rung != EW_RUNG_CONSTANT;
@@ -213,22 +255,23 @@ static int setup(ew_triangle *t, const ew_raster *raster, const ew_raster_vertex
         for (int i = 0; i < 3; i++) x[i] = ew_q20_12_from_snapped(sx[i]), y[i] = ew_q20_12_from_snapped(sy[i]);
     }
     basis_invert(&b);
-    t->column = column;
+    /* From a corner that may be far away to a column of the picture, exactly; from there
+     * spans step in 32 bits. */
+    t->column = larger(raster->scissor.x0, smaller(column, raster->scissor.x1));
     plane_init(&t->w, &b, v[0]->w, &nw);
-    plane_to_row(&t->w, row - corner_row);
+    plane_move(&t->w, t->column - column, row - corner_row);
     if (textured) {
         plane_init(&t->u, &b, 0, &nu);
         plane_init(&t->v, &b, 0, &nv);
-        plane_to_row(&t->u, row - corner_row);
-        plane_to_row(&t->v, row - corner_row);
+        plane_move(&t->u, t->column - column, row - corner_row);
+        plane_move(&t->v, t->column - column, row - corner_row);
     }
+    t->plain = plainness(raster, w_min, w_max);
+    t->run_floor = run_floor(t->w.step, raster->material.tolerance);
     return EW_OK;
 }
 
 /* ---- walk ---- */
-
-static int32_t larger(int32_t a, int32_t b) { return a > b ? a : b; }
-static int32_t smaller(int32_t a, int32_t b) { return a < b ? a : b; }
 
 /* Draws rows from `row` to below `end`, cut to the scissor in x. Returns whether a pixel
  * was reached. */
@@ -289,6 +332,13 @@ int ew_raster_triangle(ew_raster *raster, const ew_raster_vertex *a, const ew_ra
                        const ew_raster_vertex *c)
 {
     if (!in_range(a) || !in_range(b) || !in_range(c)) return EW_ERR_RANGE;
+    return ew_raster_triangle_in_range(raster, a, b, c);
+}
+
+int ew_raster_triangle_in_range(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_vertex *b,
+                                const ew_raster_vertex *c)
+{
+    EW_ASSERT(in_range(a) && in_range(b) && in_range(c));
     const ew_raster_vertex *const v[3] = { a, b, c };
     ew_snapped sx[3], sy[3];
     for (int i = 0; i < 3; i++) {
