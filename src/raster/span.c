@@ -82,22 +82,16 @@ static void fill_any(const ew_raster *raster, cursor *at, const texture_run *run
  * v's texel carries goes into u's fraction, FAST_RUN times 2^-16 texel at most. */
 enum { FAST_RUN = 512 };
 
-ALWAYS_INLINE uint64_t packed(uint32_t u, uint32_t v, int log2_height)
-{
-    uint32_t low = ((uint32_t)1 << log2_height) - 1u;
-    uint64_t both = (uint64_t)v << log2_height; /* v's texel above 32 bits of fraction */
-    return ((uint64_t)(u & ~low) << 32) + both;
-}
-
 static void fill_textured(const ew_raster *raster, cursor *at, const texture_run *run, int32_t n)
 {
     const uint16_t *texels = raster->texture.texels;
     const int log2_height = raster->texture.log2_height, turn = 32 - raster->texture.log2_width;
-    const uint32_t mask = ((uint32_t)1 << (raster->texture.log2_width + log2_height)) - 1u;
-    uint64_t p = packed(run->u, run->v, log2_height);
+    const uint32_t low = ((uint32_t)1 << log2_height) - 1u;
+    const uint32_t mask = (low + 1u) * ((uint32_t)1 << raster->texture.log2_width) - 1u;
+    uint64_t p = ((uint64_t)((run->u & ~low) | run->v >> (32 - log2_height)) << 32) | run->v << log2_height;
     /* v's step has a sign: extended over u's bits, or the sum would lose a borrow */
-    const uint64_t dp = ((uint64_t)(run->du & ~(((uint32_t)1 << log2_height) - 1u)) << 32) +
-                        (uint64_t)((int64_t)(int32_t)run->dv * ((int64_t)1 << log2_height));
+    uint32_t v_texels = (uint32_t)EW_ASR((int32_t)run->dv, 32 - log2_height);
+    const uint64_t dp = ((uint64_t)((run->du & ~low) + v_texels) << 32) | run->dv << log2_height;
     uint16_t *z = at->depth, *c = at->colour;
     uint16_t *const end = z + n;
     uint32_t w = at->w;
@@ -175,7 +169,8 @@ static void span_per_pixel(const ew_raster *raster, const ew_triangle *t, cursor
 {
     const int newton = t->rung == EW_RUNG_EXACT;
     const ew_texture *texture = &raster->texture;
-    texture_run run = { 0, 0, 0, 0 };
+    texture_run run;
+    run.du = run.dv = 0;
     at->dw = 0;
     int plain = is_plain(t, (uint32_t)(w >> 32), t->w.step, n);
     for (; n > 0; n--, w += t->w.dx, uw += t->u.dx, vw += t->v.dx) {
@@ -214,47 +209,65 @@ ALWAYS_INLINE int run_log2(const ew_triangle *t, uint32_t w, uint32_t dw)
     return k;
 }
 
-/* Runs chosen by the bound. Each is a chord: exact at its first pixel and at the next
- * run's first; the last one's at the span's last pixel. */
-static void span_by_bound(const ew_raster *raster, const ew_triangle *t, cursor *at, uint32_t uw, uint32_t vw, int32_t n,
-                          int plain)
+/* What u grows by from pixel to pixel where it is u and u/z, w grow by du, dw:
+ * (du/z - u dw) / w; `d` divides by that pixel's w. */
+ALWAYS_INLINE int32_t slope(const ew_triangle *t, int32_t u, uint32_t du, uint32_t dw, const divisor *d)
 {
-    const int newton = t->newton;
-    const uint32_t du = t->u.step, dv = t->v.step, dw = at->dw;
-    divisor d = divisor_of(t, at->w, newton);
-    int32_t u = over_w(uw, d.lead, d.reciprocal), v = over_w(vw, d.lead, d.reciprocal);
+    int scale = 30 - t->w_lead; /* u = (u/z) / w 2^scale */
+    uint32_t turned = du - (uint32_t)EW_ASR(ew_mul_s32(u, (int32_t)dw), scale);
+    return over_w(turned, d->lead, d->reciprocal);
+}
+
+/* A span or its rest as one run, uw and vw at its first pixel: the tangent in its middle,
+ * which needs one reciprocal. It is displaced as little as the chord (docs/error-bound.md). */
+static void span_as_one_run(const ew_raster *raster, const ew_triangle *t, cursor *at, uint32_t uw, uint32_t vw,
+                            int32_t n, int plain)
+{
+    uint32_t half = (uint32_t)n >> 1, dw = at->dw;
+    divisor d = divisor_of(t, at->w + dw * half, t->newton);
+    int32_t u = over_w(uw + t->u.step * half, d.lead, d.reciprocal);
+    int32_t v = over_w(vw + t->v.step * half, d.lead, d.reciprocal);
     texture_run run;
-    for (;;) {
-        int k = dw == 0 ? 30 : run_log2(t, at->w, dw);
-        int32_t length = (int32_t)1 << k;
-        run.u = top_aligned(u, t->u_shift, t->u_base);
-        run.v = top_aligned(v, t->v_shift, t->v_base);
-        if (n <= length) break;
-        uw += du << k;
-        vw += dv << k;
-        d = divisor_of(t, at->w + (dw << k), newton);
-        int32_t u_end = over_w(uw, d.lead, d.reciprocal), v_end = over_w(vw, d.lead, d.reciprocal);
-        run.du = top_aligned(EW_ASR(u_end - u, k), t->u_shift, 0);
-        run.dv = top_aligned(EW_ASR(v_end - v, k), t->v_shift, 0);
-        fill(raster, at, &run, length, plain);
-        n -= length;
-        u = u_end;
-        v = v_end;
-    }
-    /* The chord to the last pixel without a division by n - 1:
-     * (u_last - u) / (n - 1) = (du/z - u d(1/z)) / (1/z at the last pixel). */
-    if (dw != 0 && n > 1) d = divisor_of(t, at->w + dw * (uint32_t)(n - 1), newton);
-    const int scale = 30 - t->w_lead; /* u = uw / w 2^scale */
-    int32_t turn_u = (int32_t)(du - (uint32_t)EW_ASR(ew_mul_s32(u, (int32_t)dw), scale));
-    int32_t turn_v = (int32_t)(dv - (uint32_t)EW_ASR(ew_mul_s32(v, (int32_t)dw), scale));
-    run.du = top_aligned(over_w((uint32_t)turn_u, d.lead, d.reciprocal), t->u_shift, 0);
-    run.dv = top_aligned(over_w((uint32_t)turn_v, d.lead, d.reciprocal), t->v_shift, 0);
-    for (; plain && n > FAST_RUN; n -= FAST_RUN) {
-        fill_textured(raster, at, &run, FAST_RUN);
+    run.du = top_aligned(slope(t, u, t->u.step, dw, &d), t->u_shift, 0);
+    run.dv = top_aligned(slope(t, v, t->v.step, dw, &d), t->v_shift, 0);
+    run.u = top_aligned(u, t->u_shift, t->u_base) - run.du * half;
+    run.v = top_aligned(v, t->v_shift, t->v_base) - run.dv * half;
+    for (; n > FAST_RUN; n -= FAST_RUN) {
+        fill(raster, at, &run, FAST_RUN, plain);
         run.u += run.du * (uint32_t)FAST_RUN;
         run.v += run.dv * (uint32_t)FAST_RUN;
     }
     fill(raster, at, &run, n, plain);
+}
+
+/* Runs chosen by the bound: chords, exact at their first pixel and at the next run's first,
+ * but for the last. */
+static void span_by_bound(const ew_raster *raster, const ew_triangle *t, cursor *at, uint32_t uw, uint32_t vw, int32_t n,
+                          int plain)
+{
+    const uint32_t dw = at->dw;
+    int k = dw == 0 ? 30 : run_log2(t, at->w, dw);
+    if (n > (int32_t)1 << k) {
+        divisor d = divisor_of(t, at->w, t->newton);
+        int32_t u = over_w(uw, d.lead, d.reciprocal), v = over_w(vw, d.lead, d.reciprocal);
+        do {
+            texture_run run;
+            run.u = top_aligned(u, t->u_shift, t->u_base);
+            run.v = top_aligned(v, t->v_shift, t->v_base);
+            uw += t->u.step << k;
+            vw += t->v.step << k;
+            d = divisor_of(t, at->w + (dw << k), t->newton);
+            int32_t u_end = over_w(uw, d.lead, d.reciprocal), v_end = over_w(vw, d.lead, d.reciprocal);
+            run.du = top_aligned(EW_ASR(u_end - u, k), t->u_shift, 0);
+            run.dv = top_aligned(EW_ASR(v_end - v, k), t->v_shift, 0);
+            fill(raster, at, &run, (int32_t)1 << k, plain);
+            n -= (int32_t)1 << k;
+            u = u_end;
+            v = v_end;
+            k = run_log2(t, at->w, dw);
+        } while (n > (int32_t)1 << k);
+    }
+    span_as_one_run(raster, t, at, uw, vw, n, plain);
 }
 
 void ew_span(const ew_raster *raster, const ew_triangle *t, int32_t x, int32_t y, int32_t n)
@@ -275,8 +288,9 @@ void ew_span(const ew_raster *raster, const ew_triangle *t, int32_t x, int32_t y
     }
     at.w = (uint32_t)(t->w.row >> 32) + t->w.step * (uint32_t)columns;
     at.dw = t->w.step;
-    texture_run run = { 0, 0, 0, 0 };
+    texture_run run;
     if (t->rung == EW_RUNG_CONSTANT) {
+        run.u = run.v = run.du = run.dv = 0;
         fill_any(raster, &at, &run, n);
         return;
     }

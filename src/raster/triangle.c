@@ -279,18 +279,25 @@ static int walk_rows(const ew_raster *raster, ew_triangle *t, ew_edge *left, ew_
                      int32_t end)
 {
     int reached = 0;
+    const int textured = t->rung != EW_RUNG_CONSTANT;
+    const int32_t clip_left = raster->scissor.x0, clip_right = raster->scissor.x1;
+    ew_edge l = *left, r = *right; /* or they would be read and written around each span */
     for (; row < end; row++) {
-        int32_t x0 = larger(left->x, raster->scissor.x0), x1 = smaller(right->x, raster->scissor.x1);
+        int32_t x0 = larger(l.x, clip_left), x1 = smaller(r.x, clip_right);
         if (x0 < x1) {
             ew_span(raster, t, x0, row, x1 - x0);
             reached = 1;
         }
-        ew_edge_step(left);
-        ew_edge_step(right);
+        ew_edge_step(&l);
+        ew_edge_step(&r);
         t->w.row += t->w.dy;
-        t->u.row += t->u.dy;
-        t->v.row += t->v.dy;
+        if (textured) {
+            t->u.row += t->u.dy;
+            t->v.row += t->v.dy;
+        }
     }
+    *left = l;
+    *right = r;
     return reached;
 }
 
@@ -357,7 +364,6 @@ int ew_raster_triangle_in_range(ew_raster *raster, const ew_raster_vertex *a, co
     if (first >= end || from >= to) return 0;
 
     ew_triangle t;
-    t.u.row = t.u.dy = t.v.row = t.v.dy = 0; /* stepped even where there is no texture */
     int error = setup(&t, raster, v, sx, sy, area > 0, first);
     if (error) return error;
 #if EW_TRACE
