@@ -37,6 +37,17 @@ static void products_are_exact(void **state)
     assert_true(ew_abs64(INT64_MIN) == UINT64_C(1) << 63);
 }
 
+static void high_words_of_pieces(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 3000000; i++) {
+        int32_t a = test_awkward(), b = test_awkward();
+        test_context("%d * %d", a, b);
+        assert_int_equal(ew_mulh_s32_pieces(a, b), (int32_t)(((int64_t)a * b) >> 32));
+        assert_true(ew_mulh_u32_pieces((uint32_t)a, (uint32_t)b) == (uint32_t)((uint64_t)(uint32_t)a * (uint32_t)b >> 32));
+    }
+}
+
 static void leading_zeros(void **state)
 {
     (void)state;
@@ -378,6 +389,7 @@ int main(void)
         TEST(shifts_copy_the_sign),
         TEST(wrapping_is_modulo),
         TEST(products_are_exact),
+        TEST(high_words_of_pieces),
         TEST(leading_zeros),
         TEST(conversions_round_as_stated),
         TEST(product_and_quotient_saturate),

@@ -44,9 +44,28 @@ static inline uint64_t ew_wrap_mul64(uint64_t a, int32_t b) { return a * (uint64
 /* 32 x 32 -> 64 bits, exact; on most cores one instruction. */
 static inline int64_t ew_mul_s32(int32_t a, int32_t b) { return (int64_t)a * b; }
 static inline uint64_t ew_mul_u32(uint32_t a, uint32_t b) { return (uint64_t)a * b; }
-/* High words of the same products: floor(a b / 2^32). */
+/* High words of the same products: floor(a b / 2^32). The second form is made of 16-bit
+ * pieces for cores without a long multiply, where a 64-bit product is a library call; both
+ * give the same bits. */
+static inline uint32_t ew_mulh_u32_pieces(uint32_t a, uint32_t b)
+{
+    uint32_t ah = a >> 16, al = a & 0xFFFFu, bh = b >> 16, bl = b & 0xFFFFu;
+    uint32_t middle = ah * bl + ((al * bl) >> 16);   /* <= (2^16 - 1)^2 + 2^16 - 1 */
+    uint32_t other = al * bh + (middle & 0xFFFFu);   /* likewise                    */
+    return ah * bh + (middle >> 16) + (other >> 16);
+}
+static inline int32_t ew_mulh_s32_pieces(int32_t a, int32_t b)
+{
+    uint32_t high = ew_mulh_u32_pieces((uint32_t)a, (uint32_t)b);
+    return (int32_t)(high - (a < 0 ? (uint32_t)b : 0u) - (b < 0 ? (uint32_t)a : 0u));
+}
+#if defined(__ARM_ARCH_6M__)
+static inline int32_t ew_mulh_s32(int32_t a, int32_t b) { return ew_mulh_s32_pieces(a, b); }
+static inline uint32_t ew_mulh_u32(uint32_t a, uint32_t b) { return ew_mulh_u32_pieces(a, b); }
+#else
 static inline int32_t ew_mulh_s32(int32_t a, int32_t b) { return (int32_t)EW_ASR((int64_t)a * b, 32); }
 static inline uint32_t ew_mulh_u32(uint32_t a, uint32_t b) { return (uint32_t)(((uint64_t)a * b) >> 32); }
+#endif
 
 /* Magnitude; right for INT32_MIN and INT64_MIN too. */
 static inline uint32_t ew_abs32(int32_t a) { return a < 0 ? 0u - (uint32_t)a : (uint32_t)a; }
