@@ -1,5 +1,5 @@
 # Programs. Packages are asked for in recipes only, so that `make` alone needs none.
-COMMON_OBJS := $(addprefix $(B)/tools/common/,image.o options.o player.o)
+COMMON_OBJS := $(addprefix $(B)/tools/common/,image.o options.o picture_options.o player.o)
 
 PROGRAMS += $(BIN)/ew-render
 $(BIN)/ew-render: $(B)/tools/render/render.o $(COMMON_OBJS) $(LIB)

@@ -8,6 +8,7 @@
 
 #include "edgewalk/edgewalk.h"
 #include "../../tools/common/options.h"
+#include "../../tools/common/picture_options.h"
 #include "../../tools/common/player.h"
 #include "scene_measure.h"
 
@@ -15,15 +16,12 @@ static const char tool[] = "ew-accuracy";
 const char *argp_program_version = "ew-accuracy " EW_VERSION;
 
 struct options {
-    const char *scene;
-    unsigned width, height, frames, fps, every;
+    ew_picture_options picture;
+    unsigned every;
     int tolerance;
 };
 
 static const struct argp_option option_table[] = {
-    { "size", 's', "WxH", 0, "Size of the picture in pixels (320x240)", 0 },
-    { "frames", 'n', "N", 0, "Number of frames, as ew-render counts them (1)", 0 },
-    { "fps", 'f', "N", 0, "Frames per second of the scene's animation (30)", 0 },
     { "every", 'e', "K", 0, "Judge every Kth frame only (1)", 0 },
     { "exact", 'x', NULL, 0, "Draw with tolerance 0 instead of the materials' own", 0 },
     { 0 }
@@ -33,26 +31,11 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     struct options *o = state->input;
     switch (key) {
-    case 's':
-        if (ew_parse_size(arg, &o->width, &o->height)) argp_error(state, "--size %s: not WxH, 1 to 4096", arg);
-        break;
-    case 'n':
-        if (ew_parse_unsigned(arg, 1, 10000, &o->frames)) argp_error(state, "--frames %s: not 1 to 10000", arg);
-        break;
-    case 'f':
-        if (ew_parse_unsigned(arg, 1, 1000, &o->fps)) argp_error(state, "--fps %s: not 1 to 1000", arg);
-        break;
+    case ARGP_KEY_INIT: state->child_inputs[0] = &o->picture; break;
     case 'e':
         if (ew_parse_unsigned(arg, 1, 10000, &o->every)) argp_error(state, "--every %s: not 1 to 10000", arg);
         break;
     case 'x': o->tolerance = 0; break;
-    case ARGP_KEY_ARG:
-        if (o->scene) argp_error(state, "%s: one scene only", arg);
-        o->scene = arg;
-        break;
-    case ARGP_KEY_END:
-        if (!o->scene) argp_error(state, "no scene given");
-        break;
     default: return ARGP_ERR_UNKNOWN;
     }
     return 0;
@@ -60,31 +43,33 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 
 int main(int argc, char **argv)
 {
-    struct options o = { NULL, 320, 240, 1, 30, 1, -1 };
-    const struct argp argp = { option_table, parse, "SCENE.ewb",
+    struct options o = { EW_PICTURE_DEFAULTS, 1, -1 };
+    const ew_picture_options *p = &o.picture;
+    const struct argp_child children[] = { { &ew_picture_argp, 0, NULL, 0 }, { 0 } };
+    const struct argp argp = { option_table, parse, NULL,
                                "Draws frames of a baked scene with the fixed-point core and holds every fragment "
                                "against the double-precision referee. Exit status 1 when a pixel is wrong.",
-                               NULL, NULL, NULL };
+                               children, NULL, NULL };
     argp_err_exit_status = 2;
     argp_parse(&argp, argc, argv, 0, NULL, &o);
-    ew_player *player = ew_player_open(tool, o.scene, o.width, o.height);
+    ew_player *player = ew_player_open(tool, p->scene, p->width, p->height);
     if (!player) return 1;
-    size_t pixels = (size_t)o.width * o.height;
+    size_t pixels = (size_t)p->width * p->height;
     uint16_t *colour = malloc(2 * pixels), *depth = malloc(2 * pixels);
     if (!colour || !depth) abort();
-    const ew_target target = { colour, depth, (uint16_t)o.width, (uint16_t)o.height, (uint16_t)o.width };
+    const ew_target target = { colour, depth, (uint16_t)p->width, (uint16_t)p->height, (uint16_t)p->width };
 
     measures worst, m;
     memset(&worst, 0, sizeof worst);
     long differing = 0;
     unsigned judged = 0;
     double u_sum = 0, v_sum = 0;
-    for (unsigned i = 0; i < o.frames; i += o.every) {
-        int failed = ew_player_draw(player, i, o.frames, o.fps);
+    for (unsigned i = 0; i < p->frames; i += o.every) {
+        int failed = ew_player_draw(player, i, p->frames, p->fps);
         if (!failed) {
             failed = measure_scene(ew_player_scene(player), ew_player_camera(player), ew_player_time_ms(player),
                                    &target, EW_PLAYER_BACKGROUND, o.tolerance, EW_RUNG_AUTO, &m);
-            if (failed) fprintf(stderr, "%s: %s: cannot draw the scene: %s\n", tool, o.scene, ew_error_text(failed));
+            if (failed) fprintf(stderr, "%s: %s: cannot draw the scene: %s\n", tool, p->scene, ew_error_text(failed));
         }
         if (failed) return 1;
         if (o.tolerance < 0) {
@@ -104,19 +89,19 @@ int main(int argc, char **argv)
         worst.snapped_max = fmax(worst.snapped_max, m.snapped_max);
         worst.u_max = fmax(worst.u_max, m.u_max), worst.v_max = fmax(worst.v_max, m.v_max);
         u_sum += m.u_rms * m.u_rms * (double)m.textured, v_sum += m.v_rms * m.v_rms * (double)m.textured;
-        if (isatty(STDERR_FILENO)) fprintf(stderr, "\rjudged frame %u of %u", i + 1, o.frames);
+        if (isatty(STDERR_FILENO)) fprintf(stderr, "\rjudged frame %u of %u", i + 1, p->frames);
     }
     if (isatty(STDERR_FILENO)) fputc('\n', stderr);
     double n = worst.textured ? (double)worst.textured : 1;
     printf("%s: %u frames of %ux%u against the referee: %ld fragments, %ld wrong pixels, %ld hit twice, "
            "%ld of a colour that none may have\n",
-           o.scene, judged, o.width, o.height, worst.fragments, worst.wrong_px, worst.double_hits, worst.colour_px);
+           p->scene, judged, p->width, p->height, worst.fragments, worst.wrong_px, worst.double_hits, worst.colour_px);
     printf("%s: texel error rms u %.4f v %.4f, worst u %.3f v %.3f, %.4f beyond the tolerance; depth worst %.3f units, "
            "%.3f over the disc of 1/256 px; "
            "vertices within %.3f subpixel; %.4f %% of pixels differ from the unsnapped truth's outline\n",
-           o.scene, sqrt(u_sum / n), sqrt(v_sum / n), worst.u_max, worst.v_max, worst.uv_off, worst.depth_max, worst.depth_off, worst.snapped_max,
+           p->scene, sqrt(u_sum / n), sqrt(v_sum / n), worst.u_max, worst.v_max, worst.uv_off, worst.depth_max, worst.depth_off, worst.snapped_max,
            worst.covered_px ? 100.0 * (double)worst.wrong_truth_px / (double)worst.covered_px : 0.0);
-    if (differing) printf("%s: %ld pixels differ between drawing at once and by triangle\n", o.scene, differing);
+    if (differing) printf("%s: %ld pixels differ between drawing at once and by triangle\n", p->scene, differing);
     free(colour);
     free(depth);
     ew_player_close(player);

@@ -8,24 +8,21 @@
 
 #include "edgewalk/edgewalk.h"
 #include "../common/image.h"
-#include "../common/options.h"
+#include "../common/picture_options.h"
 #include "../common/player.h"
 
 static const char tool[] = "ew-render";
 const char *argp_program_version = "ew-render " EW_VERSION;
 
 struct options {
-    const char *scene, *output;
-    unsigned width, height, frames, fps;
+    ew_picture_options picture;
+    const char *output;
     int animate;
 };
 
 static const struct argp_option option_table[] = {
     { "output", 'o', "FILE", 0, "PNG file to write (frame.png). For several frames its name is numbered: "
                                 "frame-0000.png, frame-0001.png ...", 0 },
-    { "size", 's', "WxH", 0, "Size of the picture in pixels, up to 4096x4096 (320x240)", 0 },
-    { "frames", 'n', "N", 0, "Number of frames, 1 to 10000 (1)", 0 },
-    { "fps", 'f', "N", 0, "Frames per second of the scene's animation, 1 to 1000 (30)", 0 },
     { "animation", 'a', NULL, 0, "Write all frames into the one FILE, as an animated PNG", 0 },
     { 0 }
 };
@@ -34,30 +31,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 {
     struct options *o = state->input;
     switch (key) {
+    case ARGP_KEY_INIT: state->child_inputs[0] = &o->picture; break;
     case 'o': o->output = arg; break;
-    case 's':
-        if (ew_parse_size(arg, &o->width, &o->height)) {
-            argp_error(state, "--size %s: not WxH with both from 1 to 4096", arg);
-        }
-        break;
-    case 'n':
-        if (ew_parse_unsigned(arg, 1, 10000, &o->frames)) {
-            argp_error(state, "--frames %s: not a number from 1 to 10000", arg);
-        }
-        break;
-    case 'f':
-        if (ew_parse_unsigned(arg, 1, 1000, &o->fps)) {
-            argp_error(state, "--fps %s: not a number from 1 to 1000", arg);
-        }
-        break;
     case 'a': o->animate = 1; break;
-    case ARGP_KEY_ARG:
-        if (o->scene) argp_error(state, "%s: one scene only", arg);
-        o->scene = arg;
-        break;
-    case ARGP_KEY_END:
-        if (!o->scene) argp_error(state, "no scene given");
-        break;
     default: return ARGP_ERR_UNKNOWN;
     }
     return 0;
@@ -74,15 +50,16 @@ static int numbered(char *out, size_t room, const char *path, unsigned i)
 
 static int render(const struct options *o, ew_player *player)
 {
+    const ew_picture_options *p = &o->picture;
     ew_apng *apng = NULL;
-    int one_file = o->animate || o->frames == 1;
+    int one_file = o->animate || p->frames == 1;
     if (one_file) {
-        apng = ew_apng_open(tool, o->output, o->width, o->height, o->frames, o->fps);
+        apng = ew_apng_open(tool, o->output, p->width, p->height, p->frames, p->fps);
         if (!apng) return -1;
     }
     int failed = 0;
-    for (unsigned i = 0; i < o->frames && !failed; i++) {
-        failed = ew_player_draw(player, i, o->frames, o->fps);
+    for (unsigned i = 0; i < p->frames && !failed; i++) {
+        failed = ew_player_draw(player, i, p->frames, p->fps);
         if (failed) break;
         if (one_file) {
             failed = ew_apng_add(apng, ew_player_pixels(player));
@@ -92,11 +69,11 @@ static int render(const struct options *o, ew_player *player)
                 fprintf(stderr, "%s: %s: cannot write the picture: the name is too long\n", tool, o->output);
                 failed = 1;
             } else {
-                failed = ew_image_write_png(tool, name, ew_player_pixels(player), o->width, o->height);
+                failed = ew_image_write_png(tool, name, ew_player_pixels(player), p->width, p->height);
             }
         }
-        if (isatty(STDERR_FILENO) && o->frames > 1) {
-            fprintf(stderr, "\rframe %u of %u%s", i + 1, o->frames, i + 1 == o->frames ? "\n" : "");
+        if (isatty(STDERR_FILENO) && p->frames > 1) {
+            fprintf(stderr, "\rframe %u of %u%s", i + 1, p->frames, i + 1 == p->frames ? "\n" : "");
         }
     }
     if (apng && ew_apng_close(apng)) failed = 1;
@@ -105,20 +82,22 @@ static int render(const struct options *o, ew_player *player)
 
 int main(int argc, char **argv)
 {
-    struct options o = { .output = "frame.png", .width = 320, .height = 240, .frames = 1, .fps = 30 };
-    const struct argp argp = { option_table, parse, "SCENE.ewb",
+    struct options o = { EW_PICTURE_DEFAULTS, "frame.png", 0 };
+    const struct argp_child children[] = { { &ew_picture_argp, 0, NULL, 0 }, { 0 } };
+    const struct argp argp = { option_table, parse, NULL,
                                "Draws a baked scene with the fixed-point core into PNG files. A scene with an "
                                "animation plays it; round any other the camera goes once in all frames.",
-                               NULL, NULL, NULL };
+                               children, NULL, NULL };
     argp_err_exit_status = 2;
     argp_parse(&argp, argc, argv, 0, NULL, &o);
 
-    ew_player *player = ew_player_open(tool, o.scene, o.width, o.height);
+    ew_player *player = ew_player_open(tool, o.picture.scene, o.picture.width, o.picture.height);
     if (!player) return 1;
     int failed = render(&o, player);
     if (!failed) {
-        printf("%s: %u frame%s of %ux%u, %d triangles in the last\n", o.output, o.frames,
-               o.frames == 1 ? "" : "s", o.width, o.height, (int)ew_player_drawn(player));
+        const ew_picture_options *p = &o.picture;
+        printf("%s: %u frame%s of %ux%u, %d triangles in the last\n", o.output, p->frames, p->frames == 1 ? "" : "s",
+               p->width, p->height, (int)ew_player_drawn(player));
     }
     ew_player_close(player);
     return failed ? 1 : 0;
