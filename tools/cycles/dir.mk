@@ -25,7 +25,10 @@ $(C)/count.so: tools/cycles/count.c
 	@mkdir -p $(@D)
 	$(CC) -std=gnu11 -O2 -Wall -Wextra -fPIC -shared -o $@ $<
 
-count: $(C)/bench-host $(C)/count.so $(patsubst %,$(C)/bench-%.elf,$(filter-out host,$(COUNT_TARGETS)))  ## instructions per fragment, host and emulated Cortex-M (COUNT_TARGETS=)
+count:  ## instructions per fragment, host and emulated Cortex-M (COUNT_TARGETS=)
+	@SETUP=$(SETUP) tools/setup/setup.sh count
+	@$(MAKE) --no-print-directory count-run
+count-run: $(C)/bench-host $(C)/count.so $(patsubst %,$(C)/bench-%.elf,$(filter-out host,$(COUNT_TARGETS)))
 	@mkdir -p build/report
 	$(PYTHON) tools/cycles/count.py --build $(C) --csv build/report/counts.csv $(COUNT_TARGETS)
-.PHONY: count
+.PHONY: count count-run
