@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "edgewalk/raster.h"
+#include "../../src/raster/edge.h"
 #include "../reference/referee.h"
 
 enum { W = 64, H = 48, STRIDE = 70, GUARD = 64, MARK = 0x1234 };
@@ -312,6 +313,74 @@ static void scissor_cuts_exactly(void **state)
     check_borders();
 }
 
+/* Where an edge meets the current row's centre line, in pixels from the first centre: the
+ * walker keeps the first pixel at or right of it and how far it is behind (edge.h). */
+static double edge_position(const ew_edge *e) { return e->x - 1 + (e->remainder + e->dy + 1.0) / e->dy; }
+
+/* J. Kautz, "Coping with Depth" (after A. Steed and C. Loscos): polygon a = (3, 1, 1),
+ * b = (7, 4, 2), c = (4, 7, 4), sampled at whole numbers; ours are at halves, so 1/2 is
+ * added. Edges ac, ab, cb with dx/dy = 1/6, 4/3, -3/3. */
+static void worked_example(void **state)
+{
+    (void)state;
+    const double corner_at[3][3] = { { 3, 1, 1 }, { 7, 4, 2 }, { 4, 7, 4 } };
+    ew_snapped sx[3], sy[3];
+    ew_raster_vertex v[3];
+    for (int i = 0; i < 3; i++) {
+        sx[i] = (int32_t)((corner_at[i][0] + 0.5) * EW_ONE), sy[i] = (int32_t)((corner_at[i][1] + 0.5) * EW_ONE);
+        /* the example's own z, linear on the screen, an eighth of it as what is stored */
+        v[i] = corner(px(corner_at[i][0] + 0.5), px(corner_at[i][1] + 0.5), (uint32_t)(corner_at[i][2] * (1u << 28)));
+    }
+    ew_edge ac, ab, cb;
+    ew_edge_start(&ac, sx[0], sy[0], sx[2], sy[2], 1);
+    ew_edge_start(&ab, sx[0], sy[0], sx[1], sy[1], 1);
+    ew_edge_start(&cb, sx[1], sy[1], sx[2], sy[2], 4);
+    const double left[6] = { 3, 3.1667, 3.3333, 3.5, 3.6667, 3.8333 }, right[6] = { 3, 4.3333, 5.6667, 7, 6, 5 };
+    const double z_left[6] = { 1, 1.5, 2, 2.5, 3, 3.5 }, z_right[6] = { 1, 1.3333, 1.6667, 2, 2.6667, 3.3333 };
+    start(1);
+    use(1, EW_DOUBLE_SIDED);
+    assert_int_equal(ew_raster_triangle(&raster, &v[0], &v[1], &v[2]), 1);
+    for (int row = 1; row <= 6; row++) {
+        const ew_edge *r = row < 4 ? &ab : &cb;
+        test_context("line y = %d: x %.4f to %.4f", row, edge_position(&ac), edge_position(r));
+        assert_true(fabs(edge_position(&ac) - left[row - 1]) < 0.002);
+        assert_true(fabs(edge_position(r) - right[row - 1]) < 0.002);
+        for (int x = 0; x < 10; x++) {
+            int inside = x >= left[row - 1] - 1e-4 && x < right[row - 1] - 1e-3;
+            uint16_t d = depth[row * STRIDE + x];
+            test_context("line y = %d, x = %d: stored %d", row, x, d);
+            assert_int_equal(d != 0, inside);
+            if (!inside) continue;
+            double q = (x - left[row - 1]) / (right[row - 1] - left[row - 1]);
+            double z = z_left[row - 1] + q * (z_right[row - 1] - z_left[row - 1]);
+            assert_true(fabs(d + 0.5 - 8192 * z) <= 1);
+        }
+        ew_edge_step(&ac);
+        if (row < 3) ew_edge_step(&ab);
+        if (row >= 4) ew_edge_step(&cb);
+    }
+}
+
+/* Half way on the screen between z = 1 and z = 4 one sees z = 1 / ((1 + 1/4) / 2) = 1.6
+ * (Low, equation 12), not 2.5: what the core interpolates is 1/z. */
+static void linear_z_is_wrong_where_linear_1_over_z_is_right(void **state)
+{
+    (void)state;
+    ew_raster_vertex a = corner(0, 0, 0x80000000u), b = corner(0, px(H), 0x80000000u),
+                     c = corner(px(W), px(H), 0x20000000u), d = corner(px(W), 0, 0x20000000u);
+    start(1);
+    use(1, 0);
+    ew_raster_triangle(&raster, &a, &b, &c);
+    ew_raster_triangle(&raster, &a, &c, &d);
+    for (int x = 1; x < W; x++) {
+        double q = (x + 0.5) / W, z = 1 / (1 + q * (1.0 / 4 - 1)), linear = 1 + 3 * q;
+        double seen = 65536 / (depth[5 * STRIDE + x] + 0.5);
+        test_context("x %d: 1/z gives %.4f, z would give %.4f, drawn %.4f", x, z, linear, seen);
+        assert_true(fabs(seen - z) < 0.0003);
+        if (x > 3 && x < W - 4) assert_true(fabs(linear - z) > 0.1);
+    }
+}
+
 /* Spans and columns of 4,096 pixels: exact to the last one, and depth does not drift. */
 static void the_largest_target(void **state)
 {
@@ -434,6 +503,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST(hand_drawn),
+        TEST(worked_example),
+        TEST(linear_z_is_wrong_where_linear_1_over_z_is_right),
         TEST(random_triangles_are_covered_exactly),
         TEST(nets_cover_each_pixel_once),
         TEST(fan_of_a_thousand),
