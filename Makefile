@@ -76,7 +76,7 @@ clean:  ## remove everything that was made
 	rm -rf build
 
 help:  ## this list
-	@awk -F ':.*## ' '/^[a-z][a-z-]*:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z][a-z -]*:.*## / { printf "  make %-16s %s\n", $$1, $$2 }' $(filter %Makefile %dir.mk,$(MAKEFILE_LIST))
 	@echo "  MODE=release|debug|sanitize   SETUP=0 (only say what is missing)   PREFIX=$(PREFIX)"
 
 .PHONY: all programs install clean help

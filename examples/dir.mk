@@ -7,14 +7,20 @@ $(B)/scenes/%.glb: examples/scenes/%.py
 $(B)/scenes/%.ewb: $(B)/scenes/%.glb $(BIN)/ew-bake
 	$(BIN)/ew-bake $< -o $@
 
-SCENE      ?= $(B)/scenes/courtyard.glb
+# The demo's settings reach its script through the environment: a name may hold anything.
+# 120 frames at 30 a second are one turn of the courtyard's knot.
+SCENE       ?= $(B)/scenes/courtyard.glb
 DISPLAY_DEV ?= sim:320x240
-DEMO_FRAMES ?= 60
-DEMO := build/demo
+DEMO_FRAMES ?= 120
+demo-run: export SCENE := $(SCENE)
+demo-run: export DEVICE := $(DISPLAY_DEV)
+demo-run: export FRAMES := $(DEMO_FRAMES)
+demo-run: export OUT := build/demo
+demo-run: export BIN := $(BIN)
 
 demo:  ## set up what is missing; bake SCENE=file.glb, draw it, stream it to DISPLAY_DEV= (simulated)
 	@SETUP=$(SETUP) tools/setup/setup.sh demo
 	@$(MAKE) --no-print-directory demo-run
-demo-run: $(PROGRAMS) $(BIN)/ew-accuracy $(SCENE)
-	@BIN=$(BIN) SCENE='$(SCENE)' DEVICE='$(DISPLAY_DEV)' FRAMES=$(DEMO_FRAMES) OUT=$(DEMO) examples/demo.sh
+demo-run: $(PROGRAMS) $(BIN)/ew-accuracy $(COURTYARD:.ewb=.glb)
+	@examples/demo.sh
 .PHONY: demo demo-run

@@ -56,7 +56,7 @@ accuracy: $(T)/test_accuracy  ## the referee's figures for the standard scenes, 
 .PHONY: accuracy
 
 CLI_TESTS := $(sort $(wildcard host_tests/cli/test_*.py))
-RUN := $(PYTHON) host_tests/run.py
+RUN := PYTHONDONTWRITEBYTECODE=1 $(PYTHON) host_tests/run.py
 
 # Everything as it is shipped, then the C tests once more under the sanitizers.
 test:  ## set up what is missing and run every host test

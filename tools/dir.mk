@@ -1,5 +1,5 @@
 # Programs. Packages are asked for in recipes only, so that `make` alone needs none.
-COMMON_OBJS := $(addprefix $(B)/tools/common/,image.o options.o picture_options.o player.o)
+COMMON_OBJS := $(addprefix $(B)/tools/common/,image.o options.o picture_options.o player.o whole_file.o)
 
 PROGRAMS += $(BIN)/ew-render
 $(BIN)/ew-render: $(B)/tools/render/render.o $(COMMON_OBJS) $(LIB)
@@ -11,6 +11,6 @@ include tools/stream/dir.mk
 include tools/lab/dir.mk
 include tools/cycles/dir.mk
 
-setup-demo setup-test setup-lab: setup-%:  ## install what `make demo`, test or lab-test needs
+setup-demo setup-test setup-lab setup-count setup-cross: setup-%:  ## install the packages of that goal
 	@SETUP=$(SETUP) tools/setup/setup.sh $*
-.PHONY: setup-demo setup-test setup-lab
+.PHONY: setup-demo setup-test setup-lab setup-count setup-cross

@@ -121,6 +121,8 @@ static void mark_exact(const ew_raster *raster, const ref_triangle *truth, int *
             sy[i] = ref_snap(y, EW_SUBPIXEL_BITS);
             left = sx[i] < left ? sx[i] : left, right = sx[i] > right ? sx[i] : right;
             top = sy[i] < top ? sy[i] : top, bottom = sy[i] > bottom ? sy[i] : bottom;
+            /* corners that the clipper cut at the guard band are nobody's */
+            if (fabs(x) >= EW_GUARD_PX - 2 || fabs(y) >= EW_GUARD_PX - 2) continue;
             double one = ldexp(1, EW_SUBPIXEL_BITS);
             now.m.vertex_max = fmax(now.m.vertex_max, one * ref_nearest_corner(truth, &now.camera, x, y));
             now.m.snapped_max = fmax(now.m.snapped_max, one * ref_nearest_corner(truth, &now.camera, (double)sx[i] / one,

@@ -133,6 +133,10 @@ class Render(unittest.TestCase):
         self.assertEqual(size, (33, 21))
         self.assertGreater(len(set(b"".join(rows)[i:i + 3] for i in range(0, 33 * 21 * 3, 3))), 50)
 
+    def test_the_readme_shows_what_is_drawn(self):
+        run("ew-render", self.scene, "-o", self.path("now.png"))
+        self.assertEqual(png_pixels(self.path("now.png")), png_pixels(os.path.join(ROOT, "docs/courtyard.png")))
+
     def test_frames_are_numbered_and_move(self):
         done = run("ew-render", self.scene, "--output", self.path("f.png"), "--size", "80x60", "--frames", "3", "--fps", "2")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -193,11 +197,18 @@ class Render(unittest.TestCase):
                 self.assert_fails(1, self.path(name), *out, says=says)
 
     def test_bad_outputs(self):
-        self.assert_fails(1, self.scene, "-o", self.path("none/no.png"), says="cannot write the picture: No such file")
+        self.assert_fails(1, self.scene, "-o", self.path("none/no.png"), says="cannot be written: No such file")
         os.makedirs(self.path("folder.png"), exist_ok=True)
-        self.assert_fails(1, self.scene, "-o", self.path("folder.png"), says="cannot write the picture: Is a directory")
+        self.assert_fails(1, self.scene, "-o", self.path("folder.png"), says="cannot be written: Is a directory")
+        os.mkfifo(self.path("pipe"))
+        self.assert_fails(1, self.scene, "-o", self.path("pipe"), says="cannot be written: not a regular file")
+        with open(self.path("target.png"), "w", encoding="ascii"):
+            os.symlink("target.png", self.path("link.png"))
+        self.assertEqual(run("ew-render", self.scene, "-o", self.path("link.png"), "--size", "8x8").returncode, 0)
+        self.assertTrue(os.path.islink(self.path("link.png")))
+        self.assertEqual(png_pixels(self.path("target.png"))[0], (8, 8))
         if os.path.exists("/dev/full"):
-            self.assert_fails(1, self.scene, "-o", "/dev/full/no.png", says="cannot write the picture: Not a directory")
+            self.assert_fails(1, self.scene, "-o", "/dev/full/no.png", says="cannot be written: Not a directory")
 
 
 if __name__ == "__main__":

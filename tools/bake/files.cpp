@@ -117,11 +117,15 @@ void write_file(const std::string &path, const std::vector<uint8_t> &bytes, cons
             throw Error(path, "cannot be written", "is the input file");
         }
     }
-    std::string temporary = path + ".XXXXXX";
+    /* A link keeps pointing where it does. */
+    std::error_code none;
+    std::filesystem::path target = std::filesystem::canonical(path, none);
+    if (none) target = path;
+    std::string temporary = target.string() + ".XXXXXX";
     Descriptor file(mkstemp(&temporary[0]));
     if (file.fd < 0) throw Error(path, "cannot be written", std::strerror(errno));
     bool written = write_all(file.fd, bytes) && fchmod(file.fd, usual_mode()) == 0 && fsync(file.fd) == 0;
-    if (!written || rename(temporary.c_str(), path.c_str()) != 0) {
+    if (!written || rename(temporary.c_str(), target.c_str()) != 0) {
         int reason = errno;
         unlink(temporary.c_str());
         throw Error(path, "cannot be written", std::strerror(reason));

@@ -3,19 +3,19 @@
  * written through its chunk functions, their pixels deflated by zlib as IDAT's are. */
 #include "image.h"
 
+#include "whole_file.h"
+
 #include <errno.h>
 #include <png.h>
 #include <setjmp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 #include <zlib.h>
 
 struct ew_apng {
     const char *tool;
-    char *path, *temporary;
-    FILE *file;
+    ew_whole_file out;
     png_structp png;
     png_infop info;
     uint8_t *rows;    /* one frame, each row behind its filter byte */
@@ -33,7 +33,7 @@ static void complain(const char *tool, const char *path, const char *why)
 static void on_png_error(png_structp png, png_const_charp message)
 {
     ew_apng *a = png_get_error_ptr(png);
-    complain(a->tool, a->path, errno ? strerror(errno) : message);
+    complain(a->tool, a->out.shown, errno ? strerror(errno) : message);
     a->failed = 1;
     longjmp(png_jmpbuf(png), 1);
 }
@@ -70,22 +70,22 @@ static void fill_rows(ew_apng *a, const uint16_t *rgb565)
     }
 }
 
-static void release(ew_apng *a)
+/* Frees it; the file is kept if nothing failed. */
+static int release(ew_apng *a)
 {
     if (a->png) png_destroy_write_struct(&a->png, &a->info);
-    if (a->file) fclose(a->file);
-    if (a->temporary && a->failed) unlink(a->temporary);
+    if (ew_whole_file_close(&a->out, !a->failed)) a->failed = 1;
+    int result = a->failed ? -1 : 0;
     free(a->rows);
     free(a->deflated);
-    free(a->path);
-    free(a->temporary);
     free(a);
+    return result;
 }
 
 static int write_header(ew_apng *a)
 {
     if (setjmp(png_jmpbuf(a->png))) return -1;
-    png_init_io(a->png, a->file);
+    png_init_io(a->png, a->out.file);
     png_set_IHDR(a->png, a->info, a->width, a->height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(a->png, a->info, PNG_sRGB_INTENT_PERCEPTUAL);
@@ -109,25 +109,16 @@ ew_apng *ew_apng_open(const char *tool, const char *path, unsigned width, unsign
     }
     a->tool = tool;
     a->width = width, a->height = height, a->frames = frames, a->fps = fps ? fps : 1;
-    size_t room = strlen(path) + 8;
-    a->path = malloc(room);
-    a->temporary = malloc(room);
     a->rows = malloc(row_bytes(a) * height);
     a->deflated_room = compressBound((uLong)(row_bytes(a) * height));
     a->deflated = malloc(4 + a->deflated_room);
-    if (!a->path || !a->temporary || !a->rows || !a->deflated) {
+    a->failed = 1;
+    if (!a->rows || !a->deflated) {
         complain(tool, path, strerror(ENOMEM));
         release(a);
         return NULL;
     }
-    snprintf(a->path, room, "%s", path);
-    snprintf(a->temporary, room, "%s.part", path);
-    a->failed = 1;
-    a->file = fopen(a->temporary, "wb");
-    if (!a->file) {
-        complain(tool, path, strerror(errno));
-        free(a->temporary);
-        a->temporary = NULL; /* not ours to remove */
+    if (ew_whole_file_open(&a->out, tool, path)) {
         release(a);
         return NULL;
     }
@@ -158,14 +149,14 @@ int ew_apng_add(ew_apng *a, const uint16_t *rgb565)
 {
     if (a->failed) return -1;
     if (a->added == a->frames) {
-        complain(a->tool, a->path, "more frames than were announced");
+        complain(a->tool, a->out.shown, "more frames than were announced");
         a->failed = 1;
         return -1;
     }
     fill_rows(a, rgb565);
     uLongf size = a->deflated_room;
     if (compress2(a->deflated + 4, &size, a->rows, (uLong)(row_bytes(a) * a->height), 6) != Z_OK) {
-        complain(a->tool, a->path, "zlib failed");
+        complain(a->tool, a->out.shown, "zlib failed");
         a->failed = 1;
         return -1;
     }
@@ -185,24 +176,14 @@ int ew_apng_add(ew_apng *a, const uint16_t *rgb565)
 int ew_apng_close(ew_apng *a)
 {
     if (!a->failed && a->added != a->frames) {
-        complain(a->tool, a->path, "fewer frames than were announced");
+        complain(a->tool, a->out.shown, "fewer frames than were announced");
         a->failed = 1;
     }
     if (!a->failed) {
         errno = 0;
         if (setjmp(png_jmpbuf(a->png)) == 0) png_write_chunk(a->png, (png_const_bytep)"IEND", NULL, 0);
     }
-    if (!a->failed) {
-        int closed = fclose(a->file);
-        a->file = NULL;
-        if (closed != 0 || rename(a->temporary, a->path) != 0) {
-            complain(a->tool, a->path, strerror(errno));
-            a->failed = 1;
-        }
-    }
-    int result = a->failed ? -1 : 0;
-    release(a);
-    return result;
+    return release(a);
 }
 
 int ew_image_write_png(const char *tool, const char *path, const uint16_t *rgb565, unsigned width,

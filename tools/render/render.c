@@ -88,6 +88,8 @@ int main(int argc, char **argv)
                                "Draws a baked scene with the fixed-point core into PNG files. A scene with an "
                                "animation plays it; round any other the camera goes once in all frames.",
                                children, NULL, NULL };
+    static char name[] = "ew-render";
+    if (argc > 0) argv[0] = name; /* argp's words begin with it, whatever path was typed */
     argp_err_exit_status = 2;
     argp_parse(&argp, argc, argv, 0, NULL, &o);
 

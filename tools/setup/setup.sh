@@ -15,7 +15,7 @@ goal=${1:-}
 case $goal in
 demo) wanted=$demo ;;
 test) wanted=$test ;;
-lab) wanted=$lab ;;
+lab) wanted=$lab goal=lab-test ;;
 count) wanted=$count ;;
 cross) wanted=$cross ;;
 *)

@@ -19,6 +19,7 @@
 #include "sim.h"
 #include "stream_options.h"
 #include "stream_output.h"
+#include "tools/common/whole_file.h"
 
 enum {
     LEAST_STATUS_MS = 200, /* a status report may wait behind other traffic on the bus          */
@@ -267,7 +268,7 @@ static int run(stream *s)
 
     if (ew_frame_source_open(&s->source, &s->options, s->link.width, s->link.height) ||
         ew_pictures_open(&s->pictures, s->options.out, s->link.width, s->link.height) ||
-        ew_whole_file_open(&s->dump, s->options.dump_drawn) || start_sender(s)) {
+        ew_whole_file_open(&s->dump, ew_stream_tool, s->options.dump_drawn) || start_sender(s)) {
         return -1;
     }
     start = ew_now_ns();
@@ -302,7 +303,7 @@ static int stream_all(stream *s)
 {
     int failed;
 
-    if (choose_driver(s) || ew_whole_file_open(&s->record, s->options.record)) {
+    if (choose_driver(s) || ew_whole_file_open(&s->record, ew_stream_tool, s->options.record)) {
         return -1;
     }
     failed = open_lines(s);

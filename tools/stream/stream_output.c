@@ -17,46 +17,6 @@ static int complain(const char *path, const char *what)
     return -1;
 }
 
-int ew_whole_file_open(ew_whole_file *whole, const char *path)
-{
-    memset(whole, 0, sizeof *whole);
-    if (!path) {
-        return 0;
-    }
-    whole->path = path;
-    if (asprintf(&whole->temporary, "%s.part", path) < 0) {
-        whole->temporary = NULL;
-        return complain(path, "write");
-    }
-    whole->file = fopen(whole->temporary, "wb");
-    if (!whole->file) {
-        complain(path, "write");
-        free(whole->temporary);
-        return -1;
-    }
-    return 0;
-}
-
-int ew_whole_file_close(ew_whole_file *whole, int keep)
-{
-    int bad;
-    if (!whole->file) {
-        return 0;
-    }
-    bad = ferror(whole->file) != 0;
-    bad |= fclose(whole->file) != 0;
-    bad = keep && (bad || rename(whole->temporary, whole->path));
-    if (bad) {
-        complain(whole->path, "write");
-    }
-    if (bad || !keep) {
-        unlink(whole->temporary);
-    }
-    free(whole->temporary);
-    memset(whole, 0, sizeof *whole);
-    return bad ? -1 : 0;
-}
-
 int ew_pictures_open(ew_pictures *pictures, const char *dir, unsigned width, unsigned height)
 {
     struct stat status;
