@@ -18,7 +18,7 @@ $(BIN)/ew-accuracy: $(addprefix $(B)/host_tests/accuracy/,accuracy.o scene_measu
 # ---- unit tests ----
 T := $(B)/tests
 UNIT := $(B)/host_tests/unit
-UNIT_TESTS := $(addprefix $(T)/test_,fixed recip raster geometry accuracy scene display display_faults stream readme)
+UNIT_TESTS := $(addprefix $(T)/test_,fixed recip raster attributes geometry accuracy scene display display_faults stream readme)
 
 LINK_TEST = @mkdir -p $(@D); echo "LINK $@"; $(CC) $(HOST_CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka -lm
 $(addprefix $(T)/test_,fixed recip scene display display_faults): $(T)/test_%: $(UNIT)/test_%.o $(UNIT)/unit.o $(LIB)
@@ -26,6 +26,8 @@ $(addprefix $(T)/test_,fixed recip scene display display_faults): $(T)/test_%: $
 $(T)/test_raster: $(UNIT)/test_raster.o $(UNIT)/unit.o $(B)/host_tests/reference/referee.o $(LIB)
 	$(LINK_TEST)
 $(T)/test_geometry $(T)/test_accuracy: $(T)/test_%: $(UNIT)/test_%.o $(UNIT)/unit.o $(REFEREE_OBJS) $(TRACE_OBJS)
+	$(LINK_TEST)
+$(T)/test_attributes: $(UNIT)/test_attributes.o $(UNIT)/unit.o $(TRACE_OBJS)
 	$(LINK_TEST)
 $(T)/test_stream: $(UNIT)/test_stream.o $(UNIT)/unit.o \
   $(addprefix $(B)/tools/stream/,link.o panel_lines.o sender.o sim.o sim_panel.o) $(LIB)

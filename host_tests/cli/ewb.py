@@ -128,7 +128,7 @@ class Scene:
             check(material < len(self.materials), "PRIM: material exists")
             check(index_count % 3 == 0 and first_index + index_count <= len(self.indices),
                   "PRIM: indices inside INDX")
-            check(bits <= 12 and not any(self.data[start + 37:start + 40]), "PRIM: fraction bits, zeros")
+            check(1 <= bits <= 12 and not any(self.data[start + 37:start + 40]), "PRIM: fraction bits, zeros")
             indices = self.indices[first_index:first_index + index_count]
             check(all(index < count for index in indices), "INDX: below the number of vertices")
             self.primitives.append(SimpleNamespace(

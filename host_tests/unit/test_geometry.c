@@ -188,6 +188,55 @@ static void cut_edges_stay_shut(void **state)
     assert_true(together > 500000);
 }
 
+/* A corner between the clipper's guard and the transform's, 131,071 < x <= 131,072 px: it kept
+ * its place in one of its triangles and was cut in the other, and the shared edge opened. */
+static void a_corner_at_the_guard_band_keeps_its_place(void **state)
+{
+    (void)state;
+    enum { SIZE = 512 };
+    static uint16_t large[SIZE * SIZE];
+    static uint8_t hits[SIZE * SIZE];
+    const ew_target square = { large, NULL, SIZE, SIZE, SIZE };
+    const ew_viewport viewport = { 0, 0, SIZE, SIZE };
+    const ew_projection projection = { 65536, 65536, { 1 << 29, -3 } };
+    const ew_material material = { NULL, 1, 0, EW_RUNG_CONSTANT, EW_DOUBLE_SIDED };
+    const uint16_t index[6] = { 0, 1, 2, 0, 3, 1 };
+    ew_mat34 model_view; /* one unit away, 8 px to a vertex unit */
+    ew_row_from_q16_16(&model_view.row[0], 1024 * 65536, 0, 0, 0);
+    ew_row_from_q16_16(&model_view.row[1], 0, 1024 * 65536, 0, 0);
+    ew_row_from_q16_16(&model_view.row[2], 0, 0, 65536, -65536);
+    for (int n = 0; n < 150; n++) {
+        ew_vertex16 v[4] = { { 0 }, { 16352, 0, 0, 0, 0 }, { 0 }, { 0 } };
+        int side = test_random() & 1 ? 1 : -1;
+        v[0].x = (int16_t)(-(int)(test_random() % 16000) - 200), v[0].y = (int16_t)((int)(test_random() % 400) - 200);
+        v[1].y = (int16_t)((int)(test_random() % 400) - 200);
+        v[2].y = (int16_t)(side * (20000 + (int)(test_random() % 10000)));
+        v[3].y = (int16_t)(-side * (2000 + (int)(test_random() % 10000)));
+        ew_screen_vertex screen[4];
+        assert_int_equal(ew_raster_init(&raster, &square), EW_OK);
+        ew_raster_set_material(&raster, &material);
+        ew_geometry_init(&geometry, &raster);
+        assert_int_equal(ew_transform_set(&geometry.transform, &projection, &model_view, &viewport), EW_OK);
+        ew_transform_vertices(&geometry.transform, v, 4, screen);
+        assert_int_equal(screen[1].outcode & EW_OUT_GUARD, 0);
+        assert_int_equal(screen[2].outcode & EW_OUT_GUARD, EW_OUT_GUARD);
+        memset(hits, 0, sizeof hits);
+        for (int t = 0; t < 2; t++) {
+            ew_raster_clear(&raster, 0);
+            assert_true(ew_draw_triangles(&geometry, v, screen, index + 3 * t, 3, 1) >= 0);
+            for (int i = 0; i < SIZE * SIZE; i++) hits[i] = (uint8_t)(hits[i] + large[i]);
+        }
+        for (int x = 0; x < SIZE; x++) {
+            double y0 = screen[0].y / 4096.0, x0 = screen[0].x / 4096.0;
+            double y = y0 + (screen[1].y / 4096.0 - y0) * (x + 0.5 - x0) / (screen[1].x / 4096.0 - x0);
+            for (int k = (int)floor(y) - 2; k <= (int)floor(y) + 2; k++) {
+                test_context("case %d, pixel %d %d", n, x, k);
+                if (k >= 0 && k < SIZE) assert_int_equal(hits[k * SIZE + x], 1);
+            }
+        }
+    }
+}
+
 /* A floor 10^4 pictures wide fills everything below the horizon. */
 static void guard_band_drops_nothing(void **state)
 {
@@ -302,6 +351,7 @@ int main(void)
         TEST(triangles_in_front),
         TEST(triangles_through_the_near_plane),
         TEST(cut_edges_stay_shut),
+        TEST(a_corner_at_the_guard_band_keeps_its_place),
         TEST(guard_band_drops_nothing),
         TEST(arguments_are_checked),
     };

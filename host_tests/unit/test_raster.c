@@ -398,12 +398,13 @@ static void the_largest_target(void **state)
         b.x = turned ? px(8) : 0, b.y = turned ? 0 : px(8), b.w = a.w;
         e.x = turned ? 0 : px(SIZE), e.y = turned ? px(SIZE) : 0, e.w = (uint32_t)lrint(ldexp(far_w, 31));
         assert_int_equal(ew_raster_triangle(&raster, &a, &b, &e), 1);
-        int64_t sx[3] = { a.x >> 4, b.x >> 4, e.x >> 4 }, sy[3] = { a.y >> 4, b.y >> 4, e.y >> 4 };
+        enum { DOWN = 12 - EW_SUBPIXEL_BITS }; /* the corners are whole pixels */
+        int64_t sx[3] = { a.x >> DOWN, b.x >> DOWN, e.x >> DOWN }, sy[3] = { a.y >> DOWN, b.y >> DOWN, e.y >> DOWN };
         for (int i = 0; i < SIZE; i++) {
             for (int k = 0; k < 8; k++) {
                 int x = turned ? k : i, y = turned ? i : k;
                 test_context("turned %d pixel %d %d", turned, x, y);
-                int exact = EW_SUBPIXEL_BITS == 8 ? ref_covers(sx, sy, 8, x, y) : c[y * target.stride + x];
+                int exact = ref_covers(sx, sy, EW_SUBPIXEL_BITS, x, y);
                 assert_int_equal(c[y * target.stride + x], exact);
                 double w = near_w + (far_w - near_w) * (i + 0.5) / SIZE;
                 if (exact) assert_true(fabs(d[y * target.stride + x] + 0.5 - 65536 * w) < 0.6);
@@ -463,10 +464,14 @@ static void arguments_are_checked(void **state)
     assert_int_equal(ew_raster_triangle(&r, &a, &v, &b), EW_ERR_RANGE);
     v = c, v.u = INT32_MIN;
     assert_int_equal(ew_raster_triangle(&r, &a, &b, &v), EW_ERR_RANGE);
+    v = c, v.v = INT32_MIN;
+    assert_int_equal(ew_raster_triangle(&r, &a, &b, &v), EW_ERR_RANGE);
     v = c, v.u = 32768 * 4096;
     assert_int_equal(ew_raster_triangle(&r, &a, &b, &v), EW_ERR_RANGE); /* 32,768 texels apart */
     v.u -= 1;
     assert_int_equal(ew_raster_triangle(&r, &a, &b, &v), 1);
+    v = c, v.u = 1 << 30; /* two of them would differ by 2^31 */
+    assert_int_equal(ew_raster_triangle(&r, &a, &b, &v), EW_ERR_RANGE);
 }
 
 /* Any bits at all: an error code or a drawn triangle, nothing written outside. UBSan and

@@ -245,6 +245,11 @@ static void every_rule_is_checked(void **state)
         { "CAMR", 16, 1001, 2, "view exponent" },
         { "CAMR", 0, (1u << 30) + 1, 4, "view mantissa" },
         { "CAMR", 18, 1001, 2, "view exponent of the fourth" },
+        { "CAMR", 68, (uint32_t)-1001, 2, "near exponent, least" },
+        { "CAMR", 70, 1, 2, "zero behind the near exponent" },
+        { "NODE", 8 + 40 + 16, 1001, 2, "exponent of the third row" },
+        { "TEXR", 5, 12, 1, "texture height" },
+        { "TRAK", 10, 1001, 2, "exponent of the scales" },
         { "BOUN", 16, (uint32_t)-1001, 2, "bounds exponent" },
         { "NODE", 0, 0, 2, "parent below its node" },
         { "NODE", 68, 1, 2, "parent below its node, second" },
@@ -263,6 +268,7 @@ static void every_rule_is_checked(void **state)
         { "PRIM", 12, 0xFFFFFFFFu, 4, "number of indices, huge" },
         { "PRIM", 16, 0x80000000u, 4, "box mantissa" },
         { "PRIM", 36, 13, 1, "fraction bits" },
+        { "PRIM", 36, 0, 1, "fraction bits, least" },
         { "PRIM", 37, 1, 1, "zero byte" },
         { "INDX", 4, 3, 2, "index below the vertices" },
         { "MATL", 2, 1, 2, "texture number" },
@@ -297,8 +303,8 @@ static void every_rule_is_checked(void **state)
         uint32_t at, value;
         int bytes;
     } directory[] = { { 16, 0, 2 }, { 16, 33, 2 }, { 32, 'X', 1 }, { 48, 'C', 1 }, { 36, 2, 4 }, { 36, 16, 4 },
-                      { 36, 0xFFFFFFFCu, 4 }, { 40, 2, 4 }, { 40, 0, 4 }, { 40, 0xFFFFFFFFu, 4 }, { 44, 71, 4 },
-                      { 44, 0, 4 }, { 6, 36, 2 } };
+                      { 36, 0xFFFFFFFCu, 4 }, { 36, 32, 4 }, { 100, 0x7FFFFFFFu, 4 }, { 40, 2, 4 }, { 40, 0, 4 }, { 40, 0xFFFFFFFFu, 4 }, { 44, 71, 4 },
+                      { 44, 0, 4 }, { 6, 36, 2 }, { 18, 1, 1 }, { 31, 128, 1 } };
     for (size_t i = 0; i < sizeof directory / sizeof *directory; i++) {
         writer w;
         write_scene(&w);

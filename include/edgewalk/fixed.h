@@ -149,8 +149,8 @@ uint32_t ew_sqrt64(uint64_t n);
 
 /* Approximate reciprocals of a normalised mantissa m, 2^31 <= m < 2^32: 2^62 / m, so in
  * (2^30, 2^31]. The first interpolates a table of 2^EW_RECIP_BITS entries linearly, the
- * second adds one Newton step. Worst relative errors over all 2^31 mantissas, measured by
- * test_recip for each table size (bits 4 5 6 7 8 9):
+ * second adds one Newton step. Worst relative errors, held by test_recip over all 2^31
+ * mantissas for 8 bits and every 61st for the others (bits 4 5 6 7 8 9):
  *   ew_recip_table   2^-11.02 2^-12.97 2^-14.91 2^-16.53 2^-17.00 2^-17.00
  *   ew_recip_newton  2^-22.04 2^-25.90 2^-29.29 2^-29.94 2^-29.94 2^-29.94
  * How the table's entries are chosen: fixed/recip_table.py. */

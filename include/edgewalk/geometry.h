@@ -63,7 +63,7 @@ void ew_transform_vertices(const ew_transform *transform, const ew_vertex16 *in,
 typedef struct ew_clip_vertex {
     int64_t x, y, w; /* in one unit: src/geometry/clip.c                                   */
     ew_q20_12 u, v;
-    int8_t corner;   /* of the triangle, 0 to 2; -1 for one that the clipper made          */
+    int8_t corner;   /* of the triangle, 0 to 2; -1 for one without a place on the screen yet */
 } ew_clip_vertex;
 
 enum { EW_CLIP_MAX = 8 }; /* a triangle cut by five planes */

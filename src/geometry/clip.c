@@ -42,16 +42,20 @@ static const int32_t GUARD = EW_GUARD_PX - 1;
 
 enum { PLANE_NEAR, PLANE_LEFT, PLANE_RIGHT, PLANE_TOP, PLANE_BOTTOM, PLANE_COUNT };
 
-/* Not negative on the inner side of the plane. */
+/* Not negative on the inner side of the plane. A corner that has its place on the screen is
+ * inside of all of them, whatever the rounding of this unit says: the other triangles that
+ * it belongs to draw to that place. */
 static int64_t distance(const ew_clip_vertex *v, int plane, int64_t near_w)
 {
+    int64_t d;
     switch (plane) {
-    case PLANE_NEAR: return v->w - near_w;
-    case PLANE_LEFT: return v->w * GUARD + v->x;
-    case PLANE_RIGHT: return v->w * GUARD - v->x;
-    case PLANE_TOP: return v->w * GUARD + v->y;
-    default: return v->w * GUARD - v->y;
+    case PLANE_NEAR: d = v->w - near_w; break;
+    case PLANE_LEFT: d = v->w * GUARD + v->x; break;
+    case PLANE_RIGHT: d = v->w * GUARD - v->x; break;
+    case PLANE_TOP: d = v->w * GUARD + v->y; break;
+    default: d = v->w * GUARD - v->y; break;
     }
+    return d < 0 && v->corner >= 0 ? 0 : d;
 }
 
 static void cut(ew_clip_vertex *out, const ew_clip_vertex *inner, int64_t d_inner,
@@ -102,6 +106,14 @@ static void corner_from(ew_raster_vertex *out, const ew_screen_vertex *screen, e
     out->v = v;
 }
 
+/* Where x and w differ so much in size that one unit leaves few bits of w, a corner cut at
+ * the guard band may come out beyond it. */
+static ew_q20_12 within_guard(ew_q20_12 a)
+{
+    const ew_q20_12 guard = EW_GUARD_PX * 4096;
+    return a > guard ? guard : a < -guard ? -guard : a;
+}
+
 /* Clips and draws one triangle. Returns 1 or 0 as ew_raster_triangle, or its error. */
 static int draw_clipped(ew_geometry *g, const ew_vertex16 *const corner[3],
                         const ew_screen_vertex *const screen[3], int uv_shift)
@@ -117,7 +129,7 @@ static int draw_clipped(ew_geometry *g, const ew_vertex16 *const corner[3],
         polygon[i].w = shifted(h.w, unit.down_w);
         polygon[i].u = corner[i]->u * ((int32_t)1 << uv_shift);
         polygon[i].v = corner[i]->v * ((int32_t)1 << uv_shift);
-        polygon[i].corner = (int8_t)i;
+        polygon[i].corner = screen[i]->outcode & (EW_OUT_NEAR | EW_OUT_GUARD) ? -1 : (int8_t)i;
     }
     int count = 3;
     for (int plane = PLANE_NEAR; plane < PLANE_COUNT; plane++) {
@@ -134,12 +146,14 @@ static int draw_clipped(ew_geometry *g, const ew_vertex16 *const corner[3],
     for (int i = 0; i < count; i++) {
         const ew_clip_vertex *p = &polygon[i];
         ew_screen_vertex made;
-        if (p->corner >= 0 && !(screen[p->corner]->outcode & (EW_OUT_NEAR | EW_OUT_GUARD))) {
+        if (p->corner >= 0) {
             made = *screen[p->corner];
         } else {
             ew_homogeneous_vertex h;
             h.x = p->x, h.y = p->y, h.w = p->w;
             ew_project(&made, t, &h, 0, 0, unit.near_w);
+            made.x = within_guard(made.x);
+            made.y = within_guard(made.y);
         }
         corner_from(&fan[i < 2 ? i : 2], &made, p->u, p->v);
         if (i < 2) continue;

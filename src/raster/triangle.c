@@ -191,6 +191,24 @@ static void uv_differences(int32_t out[2], const ew_triangle *t, const ew_raster
 
 /* ---- set-up ---- */
 
+/* How far a plane's 32-bit steps are off after `columns`, in 2^-16 unit, rounded up: 2^27 at most. */
+static uint32_t steps_off(const ew_plane *p, int32_t columns)
+{
+    uint32_t low = (uint32_t)p->dx;                              /* of 2^32: what rounding dropped or added */
+    uint32_t residue = low < 0x80000000u ? low : 0u - low;
+    return ((residue >> 16) + 1u) * (uint32_t)columns;
+}
+
+/* Whether runs, which step in 32 bits, keep u and v within 1/128 texel: an error of w is
+ * worth `reach` of it, one of u/z is worth 2^(uv_bits + w_bits - UV_BITS), both over w. */
+static int steps_suffice(const ew_triangle *t, uint32_t reach, int uv_bits, uint32_t w_min, int32_t columns)
+{
+    uint32_t uv_off = largest3(steps_off(&t->u, columns), steps_off(&t->v, columns), 0);
+    int up = uv_bits + 32 - t->w_lead - UV_BITS; /* -2 to 30 */
+    uint64_t off = (uint64_t)reach * steps_off(&t->w, columns) + (up > 0 ? (uint64_t)uv_off << up : uv_off);
+    return off <= (uint64_t)w_min << (16 + 12 - 7); /* 2^54 + 2^57; 2^52 */
+}
+
 static uint8_t plainness(const ew_raster *raster, uint32_t w_min, uint32_t w_max)
 {
     const ew_texture *texture = &raster->texture;
@@ -208,7 +226,7 @@ static int setup(ew_triangle *t, const ew_raster *raster, const ew_raster_vertex
                  const ew_snapped sx[3], const ew_snapped sy[3], int positive, int32_t row)
 {
     uint32_t w_max = largest3(v[0]->w, v[1]->w, v[2]->w), w_min = smallest3(v[0]->w, v[1]->w, v[2]->w);
-    int32_t du1 = v[1]->u - v[0]->u, du2 = v[2]->u - v[0]->u; /* |u| <= 2^30 */
+    int32_t du1 = v[1]->u - v[0]->u, du2 = v[2]->u - v[0]->u; /* |u| < 2^30 */
     int32_t dv1 = v[1]->v - v[0]->v, dv2 = v[2]->v - v[0]->v;
     uint32_t reach = largest3(ew_abs32(du1), ew_abs32(du2), ew_abs32(dv1));
     reach = largest3(reach, ew_abs32(dv2), 0);
@@ -265,6 +283,11 @@ static int setup(ew_triangle *t, const ew_raster *raster, const ew_raster_vertex
         plane_init(&t->v, &b, 0, &nv);
         plane_move(&t->u, t->column - column, row - corner_row);
         plane_move(&t->v, t->column - column, row - corner_row);
+    }
+    /* the columns that steps may go: t->column lies inside the scissor */
+    if (t->rung == EW_RUNG_RUNS &&
+        !steps_suffice(t, reach, uv_bits, w_min, raster->scissor.x1 - raster->scissor.x0)) {
+        t->rung = EW_RUNG_EXACT;
     }
     t->plain = plainness(raster, w_min, w_max);
     t->run_floor = run_floor(t->w.step, raster->material.tolerance);
@@ -332,7 +355,7 @@ static int in_range(const ew_raster_vertex *v)
 {
     const uint32_t guard = (uint32_t)EW_GUARD_PX * 4096u; /* 2^29 */
     return ew_abs32(v->x) <= guard && ew_abs32(v->y) <= guard && v->w > 0 && v->w <= 0x80000000u &&
-           ew_abs32(v->u) <= UINT32_C(1) << 30 && ew_abs32(v->v) <= UINT32_C(1) << 30;
+           ew_abs32(v->u) < UINT32_C(1) << 30 && ew_abs32(v->v) < UINT32_C(1) << 30;
 }
 
 int ew_raster_triangle(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_vertex *b,

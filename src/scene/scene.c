@@ -122,7 +122,7 @@ static int primitive_ok(const ew_scene *s, uint32_t i)
     if (vertices < 1 || !range_ok(u32_at(p), vertices, s->section[EW_SECTION_VERT].count) ||
         u16_at(p + 6) >= s->section[EW_SECTION_MATL].count || indices % 3 != 0 ||
         !range_ok(first_index, indices, s->section[EW_SECTION_INDX].count) || !row_ok(p + 16) ||
-        p[36] > 12 || p[37] || p[38] || p[39]) {
+        p[36] < 1 || p[36] > 12 || p[37] || p[38] || p[39]) {
         return 0;
     }
     for (uint32_t k = 0; k < indices; k++) {
@@ -239,6 +239,9 @@ int ew_scene_open(ew_scene *scene, const void *data, size_t size)
     uint32_t stated = u32_at(bytes + 8);
     if (stated > size) return EW_ERR_TRUNCATED;
     if (stated < size || stated % 4 != 0 || u16_at(bytes + 6) != HEADER_BYTES) return EW_ERR_CORRUPT;
+    for (int i = 18; i < HEADER_BYTES; i++) {
+        if (bytes[i] != 0) return EW_ERR_CORRUPT;
+    }
     if (checksum(bytes, stated) != u32_at(bytes + 12)) return EW_ERR_CHECKSUM;
 
     static const ew_scene none;

@@ -55,7 +55,7 @@ struct VertexHash {
 int uv_bits_for(double low, double high)
 {
     int bits = most_uv_bits;
-    while (bits >= 0 &&
+    while (bits > 0 &&
            !(std::round(std::ldexp(low, bits)) >= -32768 && std::round(std::ldexp(high, bits)) <= 32767)) {
         bits--;
     }
@@ -74,7 +74,7 @@ struct UvPlan {
     double size[2] = {0, 0}; /* of the texture, texels; 0 without one */
     double shift[2] = {0, 0};
     bool per_triangle = false;
-    int bits = 0;
+    int bits = most_uv_bits;
 };
 
 struct MeshRange {
@@ -319,10 +319,10 @@ UvPlan Baker::plan_uvs(const Primitive &primitive, const BakedMaterial &material
         plan.bits = std::min(plan.bits, uv_bits_for(low[k] - plan.shift[k], high[k] - plan.shift[k]));
     }
     if (plan.bits < wanted_uv_bits && own_bits > plan.bits) plan.bits = own_bits, plan.per_triangle = true;
-    if (plan.bits < 0) {
+    if (plan.bits < 1) {
         throw Error(primitive.label, "a triangle's texture coordinates span " +
                                          std::to_string(std::lround(std::min(widest, 1e9))) +
-                                         " texels, the format holds 65535; try a smaller --texture-size");
+                                         " texels, the format holds 32767; try a smaller --texture-size");
     }
     if (plan.bits < wanted_uv_bits) {
         warn(primitive.label, "texture coordinates are rounded to 1/" + std::to_string(1 << plan.bits) +

@@ -173,8 +173,9 @@ int ew_apng_add(ew_apng *a, const uint16_t *rgb565)
     return 0;
 }
 
-int ew_apng_close(ew_apng *a)
+int ew_apng_close(ew_apng *a, int keep)
 {
+    if (!keep) a->failed = 1;
     if (!a->failed && a->added != a->frames) {
         complain(a->tool, a->out.shown, "fewer frames than were announced");
         a->failed = 1;
@@ -191,6 +192,5 @@ int ew_image_write_png(const char *tool, const char *path, const uint16_t *rgb56
 {
     ew_apng *a = ew_apng_open(tool, path, width, height, 1, 1);
     if (!a) return -1;
-    ew_apng_add(a, rgb565);
-    return ew_apng_close(a);
+    return ew_apng_close(a, ew_apng_add(a, rgb565) == 0);
 }

@@ -14,7 +14,8 @@ typedef struct ew_apng ew_apng;
 ew_apng *ew_apng_open(const char *tool, const char *path, unsigned width, unsigned height, unsigned frames,
                       unsigned fps);
 int ew_apng_add(ew_apng *apng, const uint16_t *rgb565);
-/* Frees it in any case; fewer frames than were announced is a failure. */
-int ew_apng_close(ew_apng *apng);
+/* Frees it in any case. With keep = 0 nothing is left of the file; otherwise fewer frames than
+ * were announced is a failure. */
+int ew_apng_close(ew_apng *apng, int keep);
 
 #endif

@@ -76,7 +76,7 @@ static int render(const struct options *o, ew_player *player)
             fprintf(stderr, "\rframe %u of %u%s", i + 1, p->frames, i + 1 == p->frames ? "\n" : "");
         }
     }
-    if (apng && ew_apng_close(apng)) failed = 1;
+    if (apng && ew_apng_close(apng, !failed)) failed = 1;
     return failed ? -1 : 0;
 }
 

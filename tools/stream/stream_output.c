@@ -82,7 +82,7 @@ static int write_animation(ew_pictures *pictures, const char *path, unsigned fps
                 : complain(path, "temporary file");
     }
     free(picture);
-    if (!apng || ew_apng_close(apng)) {
+    if (!apng || ew_apng_close(apng, !r)) {
         r = -1;
     }
     return r;
