@@ -250,6 +250,20 @@ static void draw_square(uint16_t rgb565, uint32_t w, uint8_t flags)
     assert_int_equal(ew_raster_triangle(&raster, &a, &c, &d), 1);
 }
 
+/* The constant rung is the material's colour, even beside a texture. */
+static void constant_rung_beside_a_texture(void **state)
+{
+    (void)state;
+    static const uint16_t texels[4] = { 1, 2, 3, 4 };
+    const ew_texture texture = { texels, 1, 1 };
+    const ew_material m = { &texture, 0xBEEF, 0, EW_RUNG_CONSTANT, 0 };
+    ew_raster_vertex a = corner(0, 0, 1u << 30), b = corner(0, px(H), 1u << 30), c = corner(px(W), px(H), 1u << 30);
+    start(1);
+    assert_int_equal(ew_raster_set_material(&raster, &m), EW_OK);
+    assert_int_equal(ew_raster_triangle(&raster, &a, &b, &c), 1);
+    assert_int_equal(colour[(H - 1) * STRIDE], 0xBEEF);
+}
+
 static void depth_rules(void **state)
 {
     (void)state;
@@ -514,6 +528,7 @@ int main(void)
         TEST(nets_cover_each_pixel_once),
         TEST(fan_of_a_thousand),
         TEST(only_fronts_are_drawn),
+        TEST(constant_rung_beside_a_texture),
         TEST(depth_rules),
         TEST(scissor_cuts_exactly),
         TEST(the_largest_target),

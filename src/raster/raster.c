@@ -35,10 +35,12 @@ int ew_raster_set_material(ew_raster *raster, const ew_material *material)
         return EW_ERR_ARGUMENT;
     }
     raster->material = *material;
+    if (material->rung == EW_RUNG_CONSTANT) texture = NULL; /* one colour, whatever else is there */
     if (texture) {
         raster->texture = *texture;
         raster->material.texture = &raster->texture;
     } else {
+        raster->material.texture = NULL;
         raster->texture.texels = NULL;
         raster->texture.log2_width = raster->texture.log2_height = 0;
     }

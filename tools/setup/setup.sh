@@ -1,7 +1,8 @@
 #!/bin/sh
 # setup.sh GOAL: installs the distribution's packages that `make GOAL` needs and that are
 # missing. GOAL: demo, test, lab, count or cross (the compilers that test_library tries when
-# they are there). With SETUP=0 it only lists what is missing and exits with 2. Beside it only the lab's `vmlab.sh prepare` uses the network.
+# they are there). With SETUP=0 it only lists what is missing and exits with 2. Beside it only
+# the lab's `vmlab.sh prepare` uses the network.
 set -eu
 
 # What each goal needs, by the names of Debian 12.
