@@ -60,7 +60,7 @@ int main(int argc, char **argv)
     size_t pixels = (size_t)p->width * p->height;
     uint16_t *colour = malloc(2 * pixels), *depth = malloc(2 * pixels);
     if (!colour || !depth) abort();
-    const ew_target target = { colour, depth, (uint16_t)p->width, (uint16_t)p->height, (uint16_t)p->width };
+    const ew_target target = { .colour = colour, .depth = depth, .width = (uint16_t)p->width, .height = (uint16_t)p->height, .stride = (uint16_t)p->width };
 
     measures worst, m;
     memset(&worst, 0, sizeof worst);

@@ -180,7 +180,7 @@ static void judge_fragment(const logged_fragment *f, const ref_triangle *truth, 
         now.m.saturated++;
     }
     if (f->rung == EW_RUNG_CONSTANT) return;
-    double eu = uv_error(f->u, s.u, raster->texture.log2_width), ev = uv_error(f->v, s.v, raster->texture.log2_height);
+    double eu = uv_error(f->u, s.u, raster->log2_width), ev = uv_error(f->v, s.v, raster->log2_height);
     now.m.textured++;
     now.m.u_max = fmax(now.m.u_max, fabs(eu));
     now.m.v_max = fmax(now.m.v_max, fabs(ev));
@@ -270,7 +270,8 @@ int measure_mesh(ew_geometry *geometry, const double mv[3][4], const ew_vertex16
 static int colour_allowed(const candidate *c, uint16_t colour, double border)
 {
     if (!c->textured) return colour == c->colour;
-    int width = 1 << c->texture.log2_width, height = 1 << c->texture.log2_height;
+    int width = c->texture.width, height = c->texture.height;
+    const uint16_t *texels = c->texture.texels;
     double u0 = floor(c->low[0] - border), u1 = floor(c->high[0] + border);
     double v0 = floor(c->low[1] - border), v1 = floor(c->high[1] + border);
     if (u1 - u0 >= width) u0 = 0, u1 = width - 1;
@@ -278,7 +279,7 @@ static int colour_allowed(const candidate *c, uint16_t colour, double border)
     for (double v = v0; v <= v1; v++) {
         for (double u = u0; u <= u1; u++) {
             int iu = (int)((long long)u & (width - 1)), iv = (int)((long long)v & (height - 1));
-            if (c->texture.texels[iv * width + iu] == colour) return 1;
+            if (texels[iv * width + iu] == colour) return 1;
         }
     }
     return 0;

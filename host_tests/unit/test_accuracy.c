@@ -16,9 +16,9 @@ static ew_screen_vertex screen[33 * 33];
 static measures draw(char name, ew_rung rung, uint16_t tolerance)
 {
     enum { BACKGROUND = 0x1234 };
-    const ew_target target = { colour, depth, STANDARD_WIDTH, STANDARD_HEIGHT, STANDARD_WIDTH };
-    const ew_texture texture = { texels, 8, 8 };
-    const ew_material material = { &texture, 0, tolerance, (uint8_t)rung, 0 };
+    const ew_target target = { .colour = colour, .depth = depth, .width = STANDARD_WIDTH, .height = STANDARD_HEIGHT, .stride = STANDARD_WIDTH };
+    const ew_texture texture = { .texels = texels, .width = 256, .height = 256 };
+    const ew_material material = { .texture = &texture, .tolerance = tolerance, .rung = (uint8_t)rung };
     /* focal length 160 px both ways: a square picture, of which the target shows the middle */
     const ew_viewport viewport = { 0, -40, 320, 320 };
     const ref_camera eye = { 1, 1, 0.25, 0, -40, 320, 320 };

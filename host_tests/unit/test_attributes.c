@@ -9,8 +9,8 @@
 enum { W = 64, H = 48, LOG2_SIZE = 11 };
 
 static uint16_t colour[W * H], depth[W * H], texels[1 << 2 * LOG2_SIZE];
-static const ew_target target = { colour, depth, W, H, W };
-static const ew_texture texture = { texels, LOG2_SIZE, LOG2_SIZE };
+static const ew_target target = { .colour = colour, .depth = depth, .width = W, .height = H, .stride = W };
+static const ew_texture texture = { .texels = texels, .width = 1 << LOG2_SIZE, .height = 1 << LOG2_SIZE };
 static ew_raster raster;
 
 /* The triangle at hand, and what its fragments showed. */
@@ -67,14 +67,13 @@ static double uniform(double low, double high) { return low + (high - low) * (te
 
 static ew_raster_vertex corner(double x, double y, double w, double u, double v)
 {
-    ew_raster_vertex r = { (int32_t)lrint(4096 * x), (int32_t)lrint(4096 * y), (uint32_t)lrint(ldexp(w, 31)),
-                           (int32_t)lrint(4096 * u), (int32_t)lrint(4096 * v) };
+    ew_raster_vertex r = { .x = (int32_t)lrint(4096 * x), .y = (int32_t)lrint(4096 * y), .w = (uint32_t)lrint(ldexp(w, 31)), .u = (int32_t)lrint(4096 * u), .v = (int32_t)lrint(4096 * v) };
     return r;
 }
 
 static void draw(ew_rung rung, uint16_t tolerance)
 {
-    const ew_material material = { &texture, 0, tolerance, (uint8_t)rung, EW_DOUBLE_SIDED };
+    const ew_material material = { .texture = &texture, .tolerance = tolerance, .rung = (uint8_t)rung, .flags = EW_DOUBLE_SIDED };
     now.radius = tolerance / 16.0 + 1.0 / 256;
     now.fragments = 0;
     now.depth_low = HUGE_VAL, now.depth_high = -HUGE_VAL, now.uv_off = 0;
@@ -178,13 +177,13 @@ static void far_triangles_of_wide_pictures(void **state)
     const struct {
         uint16_t width;
         ew_raster_vertex v[3];
-    } cases[] = { { 320, { { -554040, 53335, 35946, 645320, 626286 }, { 1544286, 62644, 38742, 8816, 638647 },
-                           { 410428, -310981, 31727, 533096, 773063 } } },
-                  { 1024, { { -1772930, 36951, 92942, 645320, 626286 }, { 4941717, 46260, 107961, 8816, 638647 },
-                            { 1852220, -327365, 72405, 533096, 773063 } } } };
+    } cases[] = { { 320, { { -554040, 53335, 35946, 645320, 626286, { 0, 0, 0 } }, { 1544286, 62644, 38742, 8816, 638647, { 0, 0, 0 } },
+                           { 410428, -310981, 31727, 533096, 773063, { 0, 0, 0 } } } },
+                  { 1024, { { -1772930, 36951, 92942, 645320, 626286, { 0, 0, 0 } }, { 4941717, 46260, 107961, 8816, 638647, { 0, 0, 0 } },
+                            { 1852220, -327365, 72405, 533096, 773063, { 0, 0, 0 } } } } };
     for (int k = 0; k < 2; k++) {
-        const ew_target wide = { wide_colour, wide_depth, cases[k].width, 24, cases[k].width };
-        const ew_material material = { &texture, 0, 1, EW_RUNG_AUTO, EW_DOUBLE_SIDED };
+        const ew_target wide = { .colour = wide_colour, .depth = wide_depth, .width = cases[k].width, .height = 24, .stride = cases[k].width };
+        const ew_material material = { .texture = &texture, .tolerance = 1, .rung = EW_RUNG_AUTO, .flags = EW_DOUBLE_SIDED };
         for (int i = 0; i < 3; i++) now.v[i] = cases[k].v[i];
         now.radius = 1.0 / 16 + 1.0 / 256, now.uv_off = 0, now.fragments = 0;
         assert_int_equal(ew_raster_init(&raster, &wide), EW_OK);

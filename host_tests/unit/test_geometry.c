@@ -11,7 +11,7 @@ enum { W = 96, H = 72, MESH = 24 };
 static uint16_t colour[W * H], depth[W * H], texels[16 * 16];
 static ew_raster raster;
 static ew_geometry geometry;
-static const ew_target target = { colour, depth, W, H, W };
+static const ew_target target = { .colour = colour, .depth = depth, .width = W, .height = H, .stride = W };
 
 static double uniform(double low, double high) { return low + (high - low) * (test_random() / 4294967296.0); }
 
@@ -61,9 +61,9 @@ static measures draw_random(const picture *p)
     int32_t fx = (int32_t)lrint(p->focal * 65536), fy = fx * 4 / 3;
     const ew_viewport viewport = { 0, 0, W, H };
     const ref_camera eye = { fx / 65536.0, fy / 65536.0, value(n.m, n.e), 0, 0, W, H };
-    const ew_texture texture = { texels, 4, 4 };
+    const ew_texture texture = { .texels = texels, .width = 16, .height = 16 };
     static const uint16_t tolerances[4] = { 0, 1, 4, 16 };
-    const ew_material material = { &texture, 0, tolerances[test_random() & 3], EW_RUNG_AUTO, EW_DOUBLE_SIDED };
+    const ew_material material = { .texture = &texture, .tolerance = tolerances[test_random() & 3], .rung = EW_RUNG_AUTO, .flags = EW_DOUBLE_SIDED };
 
     assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
     assert_int_equal(ew_raster_set_material(&raster, &material), EW_OK);
@@ -164,7 +164,7 @@ static void cut_edges_stay_shut(void **state)
         static uint8_t hits[W * H];
         memset(hits, 0, sizeof hits);
         for (int t = 0; t < 2; t++) {
-            const ew_material material = { NULL, 1, 0, EW_RUNG_CONSTANT, EW_DOUBLE_SIDED };
+            const ew_material material = { .colour = 1, .rung = EW_RUNG_CONSTANT, .flags = EW_DOUBLE_SIDED };
             ew_raster_set_material(&raster, &material);
             ew_raster_clear(&raster, 0);
             assert_true(ew_draw_triangles(&geometry, v, screen, index + 3 * t, 3, 0) >= 0);
@@ -196,10 +196,10 @@ static void a_corner_at_the_guard_band_keeps_its_place(void **state)
     enum { SIZE = 512 };
     static uint16_t large[SIZE * SIZE];
     static uint8_t hits[SIZE * SIZE];
-    const ew_target square = { large, NULL, SIZE, SIZE, SIZE };
+    const ew_target square = { .colour = large, .width = SIZE, .height = SIZE, .stride = SIZE };
     const ew_viewport viewport = { 0, 0, SIZE, SIZE };
     const ew_projection projection = { 65536, 65536, { 1 << 29, -3 } };
-    const ew_material material = { NULL, 1, 0, EW_RUNG_CONSTANT, EW_DOUBLE_SIDED };
+    const ew_material material = { .colour = 1, .rung = EW_RUNG_CONSTANT, .flags = EW_DOUBLE_SIDED };
     const uint16_t index[6] = { 0, 1, 2, 0, 3, 1 };
     ew_mat34 model_view; /* one unit away, 8 px to a vertex unit */
     ew_row_from_q16_16(&model_view.row[0], 1024 * 65536, 0, 0, 0);
@@ -254,7 +254,7 @@ static void guard_band_drops_nothing(void **state)
                                    { 32767, 0, 32767, 0, 0 }, { -32767, 0, 32767, 0, 0 } };
         const uint16_t index[6] = { 0, 2, 1, 0, 3, 2 };
         const ew_viewport viewport = { 0, 0, W, H };
-        const ew_material material = { NULL, 1, 0, EW_RUNG_CONSTANT, 0 };
+        const ew_material material = { .colour = 1, .rung = EW_RUNG_CONSTANT };
         ew_screen_vertex screen[4];
             assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
         ew_raster_clear(&raster, 0);

@@ -18,7 +18,7 @@ static ew_raster raster;
 
 static void start(int with_depth)
 {
-    const ew_target target = { colour, with_depth ? depth : NULL, W, H, STRIDE };
+    const ew_target target = { .colour = colour, .depth = with_depth ? depth : NULL, .width = W, .height = H, .stride = STRIDE };
     for (size_t i = 0; i < sizeof colour_memory / sizeof *colour_memory; i++) colour_memory[i] = depth_memory[i] = MARK;
     assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
     ew_raster_clear(&raster, 0);
@@ -26,7 +26,7 @@ static void start(int with_depth)
 
 static void use(uint16_t rgb565, uint8_t flags)
 {
-    const ew_material m = { NULL, rgb565, 0, EW_RUNG_CONSTANT, flags };
+    const ew_material m = { .colour = rgb565, .rung = EW_RUNG_CONSTANT, .flags = flags };
     assert_int_equal(ew_raster_set_material(&raster, &m), EW_OK);
 }
 
@@ -43,7 +43,7 @@ static void check_borders(void)
 
 static ew_raster_vertex corner(int32_t x, int32_t y, uint32_t w)
 {
-    ew_raster_vertex v = { x, y, w, 0, 0 };
+    ew_raster_vertex v = { .x = x, .y = y, .w = w };
     return v;
 }
 
@@ -255,8 +255,8 @@ static void constant_rung_beside_a_texture(void **state)
 {
     (void)state;
     static const uint16_t texels[4] = { 1, 2, 3, 4 };
-    const ew_texture texture = { texels, 1, 1 };
-    const ew_material m = { &texture, 0xBEEF, 0, EW_RUNG_CONSTANT, 0 };
+    const ew_texture texture = { .texels = texels, .width = 2, .height = 2 };
+    const ew_material m = { .texture = &texture, .colour = 0xBEEF, .rung = EW_RUNG_CONSTANT };
     ew_raster_vertex a = corner(0, 0, 1u << 30), b = corner(0, px(H), 1u << 30), c = corner(px(W), px(H), 1u << 30);
     start(1);
     assert_int_equal(ew_raster_set_material(&raster, &m), EW_OK);
@@ -403,7 +403,7 @@ static void the_largest_target(void **state)
     uint16_t *c = calloc(SIZE * 8, 2), *d = calloc(SIZE * 8, 2);
     assert_true(c && d);
     for (int turned = 0; turned < 2; turned++) {
-        ew_target target = { c, d, (uint16_t)(turned ? 8 : SIZE), (uint16_t)(turned ? SIZE : 8), (uint16_t)(turned ? 8 : SIZE) };
+        ew_target target = { .colour = c, .depth = d, .width = (uint16_t)(turned ? 8 : SIZE), .height = (uint16_t)(turned ? SIZE : 8), .stride = (uint16_t)(turned ? 8 : SIZE) };
         assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
         ew_raster_clear(&raster, 0);
         use(1, EW_DOUBLE_SIDED);
@@ -434,7 +434,7 @@ static void arguments_are_checked(void **state)
     (void)state;
     ew_raster r;
     uint16_t pixels[4];
-    ew_target good = { pixels, NULL, 2, 2, 2 }, t;
+    ew_target good = { .colour = pixels, .width = 2, .height = 2, .stride = 2 }, t;
     assert_int_equal(ew_raster_init(&r, &good), EW_OK);
     t = good, t.colour = NULL;
     assert_int_equal(ew_raster_init(&r, &t), EW_ERR_ARGUMENT);
@@ -449,8 +449,8 @@ static void arguments_are_checked(void **state)
     const ew_rect rects[4] = { { 0, 0, 3, 2 }, { 0, 0, 2, 3 }, { 1, 0, 0, 2 }, { 0, 2, 2, 1 } };
     for (int i = 0; i < 4; i++) assert_int_equal(ew_raster_set_scissor(&r, &rects[i]), EW_ERR_ARGUMENT);
 
-    ew_texture texture = { pixels, 1, 1 };
-    ew_material material = { &texture, 0, 4, EW_RUNG_AUTO, 0 }, m;
+    ew_texture texture = { .texels = pixels, .width = 2, .height = 2 };
+    ew_material material = { .texture = &texture, .tolerance = 4, .rung = EW_RUNG_AUTO }, m;
     assert_int_equal(ew_raster_set_material(&r, &material), EW_OK);
     m = material, m.rung = EW_RUNG_CONSTANT + 1;
     assert_int_equal(ew_raster_set_material(&r, &m), EW_ERR_ARGUMENT);
@@ -458,15 +458,15 @@ static void arguments_are_checked(void **state)
     assert_int_equal(ew_raster_set_material(&r, &m), EW_ERR_ARGUMENT);
     m = material, m.flags = 8;
     assert_int_equal(ew_raster_set_material(&r, &m), EW_ERR_ARGUMENT);
-    texture.log2_width = 12;
+    texture.width = 4096;
     assert_int_equal(ew_raster_set_material(&r, &material), EW_ERR_ARGUMENT);
-    texture.log2_width = 1, texture.texels = NULL;
+    texture.width = 2, texture.texels = NULL;
     assert_int_equal(ew_raster_set_material(&r, &material), EW_ERR_ARGUMENT);
     texture.texels = pixels;
     assert_int_equal(ew_raster_set_material(&r, &material), EW_OK);
 
     const int32_t guard = EW_GUARD_PX * 4096;
-    ew_raster_vertex a = { 0, 0, 1u << 30, 0, 0 }, b = { 0, guard, 1u << 30, 0, 0 }, c = { guard, guard, 1u << 30, 0, 0 }, v;
+    ew_raster_vertex a = { .w = 1u << 30 }, b = { .y = guard, .w = 1u << 30 }, c = { .x = guard, .y = guard, .w = 1u << 30 }, v;
     assert_int_equal(ew_raster_triangle(&r, &a, &b, &c), 1);
     v = c, v.x = guard + 1;
     assert_int_equal(ew_raster_triangle(&r, &a, &b, &v), EW_ERR_RANGE);
@@ -496,10 +496,8 @@ static void any_bits(void **state)
     static uint16_t texels[64 * 64];
     start(1);
     for (int n = 0; n < 400000; n++) {
-        ew_texture texture = { texels, (uint8_t)(test_random() % 7), (uint8_t)(test_random() % 7) };
-        ew_material m = { test_random() & 3 ? &texture : NULL, (uint16_t)test_random(),
-                          (uint16_t)(test_random() & 1 ? 0 : test_random() % 300), (uint8_t)(test_random() % 6),
-                          (uint8_t)(test_random() % 9) };
+        ew_texture texture = { .texels = texels, .width = (uint16_t)(1u << test_random() % 7), .height = (uint16_t)(1u << test_random() % 7) };
+        ew_material m = { .texture = test_random() & 3 ? &texture : NULL, .colour = (uint16_t)test_random(), .tolerance = (uint16_t)(test_random() & 1 ? 0 : test_random() % 300), .rung = (uint8_t)(test_random() % 6), .flags = (uint8_t)(test_random() % 9) };
         if (ew_raster_set_material(&raster, &m) != EW_OK) continue;
         ew_raster_vertex v[3];
         for (int i = 0; i < 3; i++) {

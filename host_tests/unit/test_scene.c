@@ -170,7 +170,7 @@ static void reads_what_was_written(void **state)
     ew_texture t;
     ew_scene_get_material(&s, 0, &m, &t);
     assert_ptr_equal(m.texture, &t);
-    assert_int_equal(t.texels[7], 0x8888);
+    assert_int_equal(((const uint16_t *)t.texels)[7], 0x8888);
     assert_int_equal(m.tolerance, 4);
     ew_scene_get_material(&s, 1, &m, &t);
     assert_null(m.texture);
@@ -328,7 +328,7 @@ static int32_t draw(const ew_scene *s, uint32_t time_ms)
     static ew_geometry geometry;
     ew_raster raster;
     ew_scene_camera camera;
-    const ew_target target = { colour, depth, W, H, W };
+    const ew_target target = { .colour = colour, .depth = depth, .width = W, .height = H, .stride = W };
     const ew_viewport viewport = { 0, 0, W, H };
     if (s->section[EW_SECTION_NODE].count > 16) return 0;
     assert_int_equal(ew_raster_init(&raster, &target), EW_OK);

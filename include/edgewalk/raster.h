@@ -21,9 +21,9 @@
 #include "fixed.h"
 
 enum {
-    EW_TARGET_MAX = 4096,      /* pixels across and down                                   */
-    EW_TEXTURE_LOG2_MAX = 11,  /* 2048 texels                                              */
-    EW_TOLERANCE_MAX = 256     /* 16 px                                                    */
+    EW_TARGET_MAX = 4096,   /* pixels across and down                                      */
+    EW_TEXTURE_MAX = 2048,  /* texels across and down                                      */
+    EW_TOLERANCE_MAX = 256  /* 16 px                                                       */
 };
 /* Screen positions: |x|, |y| <= 2^17 px. Not an enumerator: int may have 16 bits. */
 #define EW_GUARD_PX INT32_C(131072)
@@ -41,8 +41,8 @@ typedef struct ew_rect {
 } ew_rect;
 
 typedef struct ew_texture {
-    const uint16_t *texels; /* RGB565, rows from the top, 2^log2_width to a row            */
-    uint8_t log2_width, log2_height; /* 0 to 11                                           */
+    const void *texels;     /* uint16_t RGB565, rows from the top, `width` to a row        */
+    uint16_t width, height; /* 1 to 2048, powers of two                                   */
 } ew_texture;
 
 /* How a triangle's u and v are found: the ladder. */
@@ -58,7 +58,8 @@ typedef enum ew_rung {
 enum {
     EW_DOUBLE_SIDED = 1,   /* do not cull back faces                                       */
     EW_NO_DEPTH_TEST = 2,  /* every fragment wins                                          */
-    EW_NO_DEPTH_WRITE = 4
+    EW_NO_DEPTH_WRITE = 4,
+    EW_SHADED = 8          /* multiply by the corners' colours: not drawn yet, refused     */
 };
 
 typedef struct ew_material {
@@ -70,11 +71,17 @@ typedef struct ew_material {
     uint8_t flags;             /* EW_DOUBLE_SIDED ...                                      */
 } ew_material;
 
+/* A colour, or how much of each channel a light leaves: 255 is all of it. */
+typedef struct ew_colour888 {
+    uint8_t r, g, b;
+} ew_colour888;
+
 /* A corner, after projection. */
 typedef struct ew_raster_vertex {
     ew_q20_12 x, y;  /* px, |x|, |y| <= EW_GUARD_PX                                        */
     ew_uq1_31 w;     /* near/z, 0 < w <= 2^31                                              */
     ew_q20_12 u, v;  /* texels                                                            */
+    ew_colour888 colour; /* with EW_SHADED only                                            */
 } ew_raster_vertex;
 
 /* One drawing context. Plain memory of the caller's; two of them share nothing. Fields
@@ -83,7 +90,8 @@ typedef struct ew_raster {
     ew_target target;
     ew_rect scissor;
     ew_material material;
-    ew_texture texture; /* copy of *material.texture */
+    ew_texture texture; /* copy of *material.texture                                       */
+    uint8_t log2_width, log2_height; /* of the texture                                     */
 } ew_raster;
 
 /* Copies *target; the scissor is the whole of it, the material black and constant. Returns

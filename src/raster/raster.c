@@ -11,7 +11,7 @@ int ew_raster_init(ew_raster *raster, const ew_target *target)
     raster->scissor.x0 = raster->scissor.y0 = 0;
     raster->scissor.x1 = target->width;
     raster->scissor.y1 = target->height;
-    ew_material black = { NULL, 0, 0, EW_RUNG_CONSTANT, 0 };
+    ew_material black = { .rung = EW_RUNG_CONSTANT };
     return ew_raster_set_material(raster, &black);
 }
 
@@ -25,24 +25,28 @@ int ew_raster_set_scissor(ew_raster *raster, const ew_rect *rect)
     return EW_OK;
 }
 
+static int is_texture_size(uint32_t size) { return size >= 1 && size <= EW_TEXTURE_MAX && !(size & (size - 1)); }
+
 int ew_raster_set_material(ew_raster *raster, const ew_material *material)
 {
     const ew_texture *texture = material->texture;
     if (material->rung > EW_RUNG_CONSTANT || material->tolerance > EW_TOLERANCE_MAX ||
         (material->flags & ~(EW_DOUBLE_SIDED | EW_NO_DEPTH_TEST | EW_NO_DEPTH_WRITE)) ||
-        (texture && (!texture->texels || texture->log2_width > EW_TEXTURE_LOG2_MAX ||
-                     texture->log2_height > EW_TEXTURE_LOG2_MAX))) {
+        (texture && (!texture->texels || !is_texture_size(texture->width) || !is_texture_size(texture->height)))) {
         return EW_ERR_ARGUMENT;
     }
     raster->material = *material;
     if (material->rung == EW_RUNG_CONSTANT) texture = NULL; /* one colour, whatever else is there */
     if (texture) {
         raster->texture = *texture;
+        raster->log2_width = (uint8_t)(31 - ew_clz32(texture->width));
+        raster->log2_height = (uint8_t)(31 - ew_clz32(texture->height));
         raster->material.texture = &raster->texture;
     } else {
         raster->material.texture = NULL;
         raster->texture.texels = NULL;
-        raster->texture.log2_width = raster->texture.log2_height = 0;
+        raster->texture.width = raster->texture.height = 1;
+        raster->log2_width = raster->log2_height = 0;
     }
     return EW_OK;
 }

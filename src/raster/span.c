@@ -10,6 +10,7 @@
  * a value is off by 2^11 units of 2^-31 in w, 1/16 of a depth unit. The exact rung, for
  * which u and v may fall from that to a small part of themselves, takes 64 bits.
  */
+#include "fill.h"
 #include "triangle.h"
 
 #if defined(__GNUC__)
@@ -22,9 +23,7 @@
 typedef struct cursor {
     uint16_t *colour, *depth; /* depth may be NULL */
     uint32_t w, dw;
-#if EW_TRACE
     uint16_t x, y;
-#endif
 } cursor;
 
 /* u and v of the next pixel and what they grow by, top-aligned: 2^32 is the texture's
@@ -40,38 +39,27 @@ ALWAYS_INLINE uint32_t texel_of(uint32_t a, int log2_size) { return a >> 1 >> (3
 static void trace(const ew_raster *raster, cursor *at, uint16_t d, uint32_t u, uint32_t v)
 {
     /* q20.12, modulo the texture's size */
-    ew_trace_fragment(at->x, at->y, d, (ew_q20_12)(u >> (20 - raster->texture.log2_width)),
-                      (ew_q20_12)(v >> (20 - raster->texture.log2_height)));
+    ew_trace_fragment(at->x, at->y, d, (ew_q20_12)(u >> (20 - raster->log2_width)),
+                      (ew_q20_12)(v >> (20 - raster->log2_height)));
     at->x++;
 }
 #endif
 
 /* ---- the loops ---- */
 
-/* Every combination: depth tested, written, clamped or absent; textured or one colour. */
+/* Everything else: fill.c. */
 static void fill_any(const ew_raster *raster, cursor *at, const texture_run *run, int32_t n)
 {
-    const ew_texture *t = &raster->texture;
-    const int test = at->depth && !(raster->material.flags & EW_NO_DEPTH_TEST);
-    const int write = at->depth && !(raster->material.flags & EW_NO_DEPTH_WRITE);
-    uint32_t u = run->u, v = run->v;
-    uint16_t pixel = raster->material.colour;
-    for (int32_t i = 0; i < n; i++) {
-        uint32_t d = at->w >> 15;
-        if (d < 1) d = 1;
-        if (d > 65535) d = 65535;
-#if EW_TRACE
-        trace(raster, at, (uint16_t)d, u, v);
-#endif
-        if (!test || d > at->depth[i]) {
-            if (write) at->depth[i] = (uint16_t)d;
-            if (t->texels) pixel = t->texels[texel_of(v, t->log2_height) << t->log2_width | texel_of(u, t->log2_width)];
-            at->colour[i] = pixel;
-        }
-        at->w += at->dw;
-        u += run->du;
-        v += run->dv;
-    }
+    ew_run r;
+    r.x = at->x, r.y = at->y;
+    r.w = at->w, r.dw = at->dw;
+    r.u = (uint64_t)run->u << raster->log2_width;
+    r.v = (uint64_t)run->v << raster->log2_height;
+    r.du = (uint64_t)(int64_t)(int32_t)run->du << raster->log2_width;
+    r.dv = (uint64_t)(int64_t)(int32_t)run->dv << raster->log2_height;
+    ew_fill_any(raster, &r, n);
+    at->x = (uint16_t)(at->x + n);
+    at->w += at->dw * (uint32_t)n;
     at->colour += n;
     if (at->depth) at->depth += n;
 }
@@ -85,9 +73,9 @@ enum { FAST_RUN = 512 };
 static void fill_textured(const ew_raster *raster, cursor *at, const texture_run *run, int32_t n)
 {
     const uint16_t *texels = raster->texture.texels;
-    const int log2_height = raster->texture.log2_height, turn = 32 - raster->texture.log2_width;
+    const int log2_height = raster->log2_height, turn = 32 - raster->log2_width;
     const uint32_t low = ((uint32_t)1 << log2_height) - 1u;
-    const uint32_t mask = (low + 1u) * ((uint32_t)1 << raster->texture.log2_width) - 1u;
+    const uint32_t mask = (low + 1u) * ((uint32_t)1 << raster->log2_width) - 1u;
     uint64_t p = ((uint64_t)((run->u & ~low) | run->v >> (32 - log2_height)) << 32) | run->v << log2_height;
     /* v's step has a sign: extended over u's bits, or the sum would lose a borrow */
     uint32_t v_texels = (uint32_t)EW_ASR((int32_t)run->dv, 32 - log2_height);
@@ -109,6 +97,9 @@ static void fill_textured(const ew_raster *raster, cursor *at, const texture_run
         p += dp;
         c++;
     } while (++z != end);
+#if !EW_TRACE
+    at->x = (uint16_t)(at->x + n);
+#endif
     at->w = w;
     at->depth = z;
     at->colour = c;
@@ -168,7 +159,7 @@ static void span_per_pixel(const ew_raster *raster, const ew_triangle *t, cursor
                            uint64_t vw, int32_t n)
 {
     const int newton = t->rung == EW_RUNG_EXACT;
-    const ew_texture *texture = &raster->texture;
+    const uint16_t *texels = raster->texture.texels;
     texture_run run;
     run.du = run.dv = 0;
     at->dw = 0;
@@ -179,6 +170,7 @@ static void span_per_pixel(const ew_raster *raster, const ew_triangle *t, cursor
         if (plain && depth <= *at->depth && !EW_TRACE) {
             at->depth++;
             at->colour++;
+            at->x++;
             continue;
         }
         divisor d = divisor_of(t, at->w, newton);
@@ -186,8 +178,9 @@ static void span_per_pixel(const ew_raster *raster, const ew_triangle *t, cursor
         run.v = top_aligned(over_w((uint32_t)(vw >> 32), d.lead, d.reciprocal), t->v_shift, t->v_base);
         if (plain && !EW_TRACE) {
             *at->depth++ = (uint16_t)depth;
-            *at->colour++ = texture->texels[texel_of(run.v, texture->log2_height) << texture->log2_width |
-                                            texel_of(run.u, texture->log2_width)];
+            *at->colour++ = texels[texel_of(run.v, raster->log2_height) << raster->log2_width |
+                                   texel_of(run.u, raster->log2_width)];
+            at->x++;
         } else {
             fill_any(raster, at, &run, 1);
         }
@@ -277,10 +270,8 @@ void ew_span(const ew_raster *raster, const ew_triangle *t, int32_t x, int32_t y
     cursor at;
     at.colour = raster->target.colour + offset;
     at.depth = raster->target.depth ? raster->target.depth + offset : NULL;
-#if EW_TRACE
     at.x = (uint16_t)x;
     at.y = (uint16_t)y;
-#endif
     if (t->rung == EW_RUNG_EXACT || t->rung == EW_RUNG_TABLE) {
         span_per_pixel(raster, t, &at, t->w.row + ew_wrap_mul64(t->w.dx, columns),
                        t->u.row + ew_wrap_mul64(t->u.dx, columns), t->v.row + ew_wrap_mul64(t->v.dx, columns), n);

@@ -211,9 +211,8 @@ static int steps_suffice(const ew_triangle *t, uint32_t reach, int uv_bits, uint
 
 static uint8_t plainness(const ew_raster *raster, uint32_t w_min, uint32_t w_max)
 {
-    const ew_texture *texture = &raster->texture;
     if (!raster->target.depth || (raster->material.flags & (EW_NO_DEPTH_TEST | EW_NO_DEPTH_WRITE)) ||
-        texture->log2_width < 1 || texture->log2_height < 1 || texture->log2_width + texture->log2_height > 16) {
+        raster->log2_width < 1 || raster->log2_height < 1 || raster->log2_width + raster->log2_height > 16) {
         return PLAIN_NEVER;
     }
     /* what lies outside of the corners, and steps' rounding: see w_lead */
@@ -240,7 +239,7 @@ static int setup(ew_triangle *t, const ew_raster *raster, const ew_raster_vertex
      * the rounding of its steps: 2^11 units, another quarter wherever depth is not clamped. */
     t->w_lead = (uint8_t)smaller(ew_clz32(w_max + w_max / 2), W_LEAD_MOST);
     /* 2^32 is the texture's size: texels are shifted by 32 - log2 of it, 21 at least */
-    int u_align = 32 - raster->texture.log2_width, v_align = 32 - raster->texture.log2_height;
+    int u_align = 32 - raster->log2_width, v_align = 32 - raster->log2_height;
     t->u_shift = (uint8_t)(u_align - (UV_MOST + 12 - uv_bits));
     t->v_shift = (uint8_t)(v_align - (UV_MOST + 12 - uv_bits));
     t->u_base = (uint32_t)v[0]->u << (u_align - 12);

@@ -93,6 +93,7 @@ static int range_ok(uint32_t first, uint32_t count, uint32_t all)
     return first <= all && count <= all - first;
 }
 
+
 static const uint8_t *record(const ew_scene *s, int section, uint32_t i)
 {
     return s->section[section].records + (size_t)i * rules[section].record_bytes;
@@ -139,10 +140,12 @@ static int material_ok(const ew_scene *s, uint32_t i)
            u16_at(p + 6) <= EW_TOLERANCE_MAX;
 }
 
+enum { TEXTURE_LOG2_MAX = 11 }; /* EW_TEXTURE_MAX */
+
 static int texture_ok(const ew_scene *s, uint32_t i)
 {
     const uint8_t *p = record(s, EW_SECTION_TEXR, i);
-    return p[4] <= EW_TEXTURE_LOG2_MAX && p[5] <= EW_TEXTURE_LOG2_MAX && p[6] == 0 && p[7] == 0 &&
+    return p[4] <= TEXTURE_LOG2_MAX && p[5] <= TEXTURE_LOG2_MAX && p[6] == 0 && p[7] == 0 &&
            range_ok(u32_at(p), (uint32_t)1 << (p[4] + p[5]), s->section[EW_SECTION_TEXL].count);
 }
 
@@ -327,8 +330,8 @@ void ew_scene_get_material(const ew_scene *scene, uint32_t i, ew_material *mater
     if (number == 0xFFFF) return;
     const uint8_t *t = record(scene, EW_SECTION_TEXR, number);
     texture->texels = (const void *)record(scene, EW_SECTION_TEXL, u32_at(t));
-    texture->log2_width = t[4];
-    texture->log2_height = t[5];
+    texture->width = (uint16_t)(1u << t[4]);
+    texture->height = (uint16_t)(1u << t[5]);
     material->texture = texture;
 }
 

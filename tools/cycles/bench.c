@@ -50,9 +50,9 @@ void bench_end(void) { __asm__ volatile(""); }
 
 static void run(const bench_case *c)
 {
-    const ew_target target = { colour, depth, W, H, W };
-    const ew_texture texture = { bench_texture, 8, 8 };
-    const ew_material material = { &texture, 0, c->tolerance, c->rung, 0 };
+    const ew_target target = { .colour = colour, .depth = depth, .width = W, .height = H, .stride = W };
+    const ew_texture texture = { .texels = bench_texture, .width = 256, .height = 256 };
+    const ew_material material = { .texture = &texture, .tolerance = c->tolerance, .rung = c->rung };
     const ew_projection projection = { 65536, 65536, { 1 << 29, -1 } };
     const ew_viewport viewport = { 0, -40, 320, 320 };
     ew_mat34 model_view;
