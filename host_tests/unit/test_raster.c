@@ -452,7 +452,7 @@ static void arguments_are_checked(void **state)
     ew_texture texture = { .texels = pixels, .width = 2, .height = 2 };
     ew_material material = { .texture = &texture, .tolerance = 4, .rung = EW_RUNG_AUTO }, m;
     assert_int_equal(ew_raster_set_material(&r, &material), EW_OK);
-    m = material, m.rung = EW_RUNG_CONSTANT + 1;
+    m = material, m.rung = EW_RUNG_COUNT;
     assert_int_equal(ew_raster_set_material(&r, &m), EW_ERR_ARGUMENT);
     m = material, m.tolerance = EW_TOLERANCE_MAX + 1;
     assert_int_equal(ew_raster_set_material(&r, &m), EW_ERR_ARGUMENT);

@@ -52,7 +52,10 @@ typedef enum ew_rung {
     EW_RUNG_RUNS,      /* linear in runs, as long as the material's tolerance allows         */
     EW_RUNG_TABLE,     /* a table reciprocal for each pixel                                 */
     EW_RUNG_EXACT,     /* the same with a Newton step                                       */
-    EW_RUNG_CONSTANT   /* the material's colour: what is drawn without a texture            */
+    EW_RUNG_CONSTANT,  /* the material's colour: what is drawn without a texture            */
+    EW_RUNG_RUNS_8, EW_RUNG_RUNS_16, EW_RUNG_RUNS_32, /* linear in runs of that many pixels,
+                          whatever it costs in accuracy: for comparison                     */
+    EW_RUNG_COUNT
 } ew_rung;
 
 enum {

@@ -30,7 +30,7 @@ static int is_texture_size(uint32_t size) { return size >= 1 && size <= EW_TEXTU
 int ew_raster_set_material(ew_raster *raster, const ew_material *material)
 {
     const ew_texture *texture = material->texture;
-    if (material->rung > EW_RUNG_CONSTANT || material->tolerance > EW_TOLERANCE_MAX ||
+    if (material->rung >= EW_RUNG_COUNT || material->tolerance > EW_TOLERANCE_MAX ||
         (material->flags & ~(EW_DOUBLE_SIDED | EW_NO_DEPTH_TEST | EW_NO_DEPTH_WRITE)) ||
         (texture && (!texture->texels || !is_texture_size(texture->width) || !is_texture_size(texture->height)))) {
         return EW_ERR_ARGUMENT;

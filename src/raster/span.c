@@ -1,85 +1,149 @@
-/* Spans: what is done for each pixel, and how u and v get there.
+/* Rows and spans: what is done for each pixel, and how its attributes get there.
  *
- * A span is drawn in runs: pieces over which u and v are linear. The affine rung makes one
+ * A span is drawn in runs: pieces over which attributes are linear. The affine rung makes one
  * run of it, the bound (docs/error-bound.md) as few as the tolerance allows, the table and
  * exact rungs one for each pixel. A run is filled by one of two loops: `fill_textured` for
- * the common case, `fill_any` for every other combination of material and target.
+ * the common case, ew_fill_any for every other combination of material and target.
  *
- * 1/z and the texture quantities are taken as 32 bits at the span's first pixel and step
- * from there: a step is off by at most half a unit, so 4,096 pixels from the plane's column
- * a value is off by 2^11 units of 2^-31 in w, 1/16 of a depth unit. The exact rung, for
- * which u and v may fall from that to a small part of themselves, takes 64 bits.
+ * Spans step in 32 bits. Those of narrow triangles may, whatever they do; those of wide ones
+ * are cut where steps would lose too much, and each piece is aligned anew from 64 bits.
  */
 #include "fill.h"
 #include "triangle.h"
 
 #if defined(__GNUC__)
 #define ALWAYS_INLINE static inline __attribute__((always_inline))
+#define NOINLINE static __attribute__((noinline))
 #else
 #define ALWAYS_INLINE static inline
+#define NOINLINE static
 #endif
 
-/* Where the next pixel goes, and its 1/z. */
+/* What is linear along a piece of a span, from its first pixel on. */
+typedef struct linear {
+    uint32_t w, dw;       /* w' times 2^align                                            */
+    uint32_t u, du, v, dv; /* attributes likewise; on the affine rung they alone, with their
+                             fraction bits                                               */
+    int align;
+    uint32_t shade[3], dshade[3];
+} linear;
+
+/* Attributes of a run's first pixel, with their fraction bits, and what they grow by. */
+typedef struct attribute_run {
+    uint32_t u, du, v, dv;
+    uint32_t shade[3], dshade[3];
+} attribute_run;
+
+static int32_t larger(int32_t a, int32_t b) { return a > b ? a : b; }
+static int32_t smaller(int32_t a, int32_t b) { return a < b ? a : b; }
+
+/* ---- division by w' ---- */
+
+/* 1/w', made ready: a' 2^30 / w'. */
+typedef struct divisor {
+    uint32_t reciprocal;
+    int zeros;
+} divisor;
+
+ALWAYS_INLINE divisor divisor_of(uint32_t w, int newton)
+{
+    divisor d;
+    d.zeros = ew_clz32(w);
+    d.reciprocal = newton ? ew_recip_newton(w << d.zeros) : ew_recip_table(w << d.zeros);
+    return d;
+}
+
+/* |a'| < w'/4: a' 2^zeros < 2^30, and twice that for the slopes of runs (triangle.h). */
+ALWAYS_INLINE uint32_t over_w(uint32_t a, divisor d)
+{
+    return (uint32_t)ew_mulh_s32((int32_t)(a << d.zeros), (int32_t)d.reciprocal);
+}
+
+/* What an attribute grows by from pixel to pixel where it is a and grow a' by da, w' by dw:
+ * (da - a dw) / w'. */
+ALWAYS_INLINE uint32_t slope(uint32_t a, uint32_t da, uint32_t dw, divisor d)
+{
+    return over_w(da - (uint32_t)EW_ASR(ew_mul_s32((int32_t)a, (int32_t)dw), 30), d);
+}
+
+
+/* ---- run lengths ---- */
+
+/* 16 sqrt(q), for q = product 2^exponent, from below: in each octave the chord of the root,
+ * at most 2.2 % short. 16 EW_LONGEST_RUN at most. */
+ALWAYS_INLINE uint32_t root_of(uint32_t product, int exponent)
+{
+    int zeros = ew_clz32(product);
+    uint32_t m = (product << zeros) >> 16; /* 2^15 to 2^16 */
+    exponent += 31 - zeros;
+    if (exponent >= 26) return 16 * EW_LONGEST_RUN;
+    if (exponent < 0 || zeros == 32) return 0;
+    /* 2^15 sqrt(m / 2^15), or sqrt 2 times that: (2 - sqrt 2) + (sqrt 2 - 1) x, times sqrt 2 */
+    uint32_t root = exponent & 1 ? 27145u + (m * 19194u >> 15) : 19195u + (m * 13572u >> 15);
+    return root >> (15 - (exponent >> 1));
+}
+
+/* The longest run that the bound allows from a pixel with 1/z = w: N^2 |dw| <= 4 t w at its
+ * far end, so with q = 4 t w / |dw|, N = sqrt q where w grows along the run and
+ * sqrt(q + 4 t^2) - 2 t where it falls. Twice within a run is as far as w may grow or fall,
+ * for the run's slope to be a number of 32 bits: N <= w / |dw| = q / 4 t. */
+ALWAYS_INLINE uint32_t run_length(const ew_triangle *t, uint32_t w, uint32_t dw, int align)
+{
+    const uint32_t tolerance = t->run_tolerance;
+    uint32_t n16 = root_of((w >> 15) * t->run_scale, t->run_exponent - align);
+    if ((int32_t)dw < 0) n16 = n16 > 2u * tolerance ? n16 - 2u * tolerance : 0;
+    uint32_t n = n16 >> 4;
+    if (4u * n < tolerance) n = 4u * n * n / tolerance;
+    return n < t->longest ? n : t->longest;
+}
+
+
+/* ---- textured, depth tested and written: the common case ---- */
+
+/* How a run's u and v become one texel number (t->plain says where this will do: depth inside
+ * its range, sizes of 2 at least, 2^16 texels at most). u and v share 64 bits: from the top u's
+ * texel and fraction, v's texel, v's fraction. One addition steps both, one rotation brings
+ * the texel number together; what v's texel carries goes into u's fraction, 512 times 2^-16
+ * texel at most. */
+typedef struct packing {
+    const uint16_t *texels;
+    uint32_t low, mask;
+    uint8_t log2_height, turn, u_shift, v_shift;
+    uint32_t u_base, v_base;
+} packing;
+
+ALWAYS_INLINE void packing_init(packing *k, const ew_raster *raster, const ew_triangle *t)
+{
+    k->texels = raster->texture.texels;
+    k->log2_height = raster->log2_height;
+    k->turn = (uint8_t)(32 - raster->log2_width);
+    k->low = (UINT32_C(1) << raster->log2_height) - 1u;
+    k->mask = (k->low + 1u) * (UINT32_C(1) << raster->log2_width) - 1u;
+    k->u_shift = t->u_shift, k->v_shift = t->v_shift;
+    k->u_base = t->u_base, k->v_base = t->v_base;
+}
+
+/* Where the next pixel goes, and its 1/z as uq1.31. */
 typedef struct cursor {
-    uint16_t *colour, *depth; /* depth may be NULL */
+    uint16_t *colour, *depth;
     uint32_t w, dw;
+#if EW_TRACE
     uint16_t x, y;
+#endif
 } cursor;
 
-/* u and v of the next pixel and what they grow by, top-aligned: 2^32 is the texture's
- * width or height, so that repeating is the wrapping of 32 bits. */
-typedef struct texture_run {
-    uint32_t u, du, v, dv;
-} texture_run;
-
-/* floor(a / 2^(32 - log2 of the size)): the texel; sizes of one texel shift by 32. */
-ALWAYS_INLINE uint32_t texel_of(uint32_t a, int log2_size) { return a >> 1 >> (31 - log2_size); }
-
-#if EW_TRACE
-static void trace(const ew_raster *raster, cursor *at, uint16_t d, uint32_t u, uint32_t v)
+/* n pixels, n at most EW_LONGEST_RUN. */
+ALWAYS_INLINE void fill_textured(cursor *at, const packing *k, uint32_t u, uint32_t du, uint32_t v, uint32_t dv, int32_t n)
 {
-    /* q20.12, modulo the texture's size */
-    ew_trace_fragment(at->x, at->y, d, (ew_q20_12)(u >> (20 - raster->log2_width)),
-                      (ew_q20_12)(v >> (20 - raster->log2_height)));
-    at->x++;
-}
-#endif
-
-/* ---- the loops ---- */
-
-/* Everything else: fill.c. */
-static void fill_any(const ew_raster *raster, cursor *at, const texture_run *run, int32_t n)
-{
-    ew_run r;
-    r.x = at->x, r.y = at->y;
-    r.w = at->w, r.dw = at->dw;
-    r.u = (uint64_t)run->u << raster->log2_width;
-    r.v = (uint64_t)run->v << raster->log2_height;
-    r.du = (uint64_t)(int64_t)(int32_t)run->du << raster->log2_width;
-    r.dv = (uint64_t)(int64_t)(int32_t)run->dv << raster->log2_height;
-    ew_fill_any(raster, &r, n);
-    at->x = (uint16_t)(at->x + n);
-    at->w += at->dw * (uint32_t)n;
-    at->colour += n;
-    if (at->depth) at->depth += n;
-}
-
-/* Depth tested and written and inside its range, texture of at most 2^16 texels (t->plain),
- * n at most FAST_RUN. u and v share 64 bits: from the top u's texel and fraction, v's texel, v's
- * fraction. One addition steps both, one rotation brings the texel number together; what
- * v's texel carries goes into u's fraction, FAST_RUN times 2^-16 texel at most. */
-enum { FAST_RUN = 512 };
-
-static void fill_textured(const ew_raster *raster, cursor *at, const texture_run *run, int32_t n)
-{
-    const uint16_t *texels = raster->texture.texels;
-    const int log2_height = raster->log2_height, turn = 32 - raster->log2_width;
-    const uint32_t low = ((uint32_t)1 << log2_height) - 1u;
-    const uint32_t mask = (low + 1u) * ((uint32_t)1 << raster->log2_width) - 1u;
-    uint64_t p = ((uint64_t)((run->u & ~low) | run->v >> (32 - log2_height)) << 32) | run->v << log2_height;
+    const uint16_t *texels = k->texels;
+    const uint32_t mask = k->mask, turn = k->turn;
+    /* top-aligned: 2^32 is the texture's size, so that repeating is the wrapping of 32 bits */
+    u = (u << k->u_shift) + k->u_base, v = (v << k->v_shift) + k->v_base;
+    du <<= k->u_shift, dv <<= k->v_shift;
+    uint64_t p = ((uint64_t)((u & ~k->low) | v >> (32 - k->log2_height)) << 32) | v << k->log2_height;
     /* v's step has a sign: extended over u's bits, or the sum would lose a borrow */
-    uint32_t v_texels = (uint32_t)EW_ASR((int32_t)run->dv, 32 - log2_height);
-    const uint64_t dp = ((uint64_t)((run->du & ~low) + v_texels) << 32) | run->dv << log2_height;
+    const uint64_t dp = ((uint64_t)((du & ~k->low) + (uint32_t)EW_ASR((int32_t)dv, 32 - k->log2_height)) << 32) |
+                        dv << k->log2_height;
     uint16_t *z = at->depth, *c = at->colour;
     uint16_t *const end = z + n;
     uint32_t w = at->w;
@@ -87,7 +151,10 @@ static void fill_textured(const ew_raster *raster, cursor *at, const texture_run
     do {
         uint32_t d = w >> 15, high = (uint32_t)(p >> 32);
 #if EW_TRACE
-        trace(raster, at, (uint16_t)d, high, (high << (32 - log2_height)) | (uint32_t)(p & 0xFFFFFFFFu) >> log2_height);
+        /* q20.12, modulo the texture's size */
+        ew_trace_fragment(at->x++, at->y, (uint16_t)d, (ew_q20_12)(high >> (turn - 12)),
+                          (ew_q20_12)(((high << (32 - k->log2_height)) | (uint32_t)(p & 0xFFFFFFFFu) >> k->log2_height) >>
+                                      (20 - k->log2_height)));
 #endif
         if (d > *z) {
             *z = (uint16_t)d;
@@ -97,13 +164,159 @@ static void fill_textured(const ew_raster *raster, cursor *at, const texture_run
         p += dp;
         c++;
     } while (++z != end);
-#if !EW_TRACE
-    at->x = (uint16_t)(at->x + n);
-#endif
     at->w = w;
     at->depth = z;
     at->colour = c;
 }
+
+/* Each pixel with a reciprocal of its own. */
+ALWAYS_INLINE void textured_pixels(cursor *at, const packing *k, linear *l, int newton, int32_t n)
+{
+    uint32_t w = l->w, u = l->u, v = l->v;
+    for (; n > 0; n--, w += l->dw, u += l->du, v += l->dv) {
+        uint32_t depth = at->w >> 15;
+        if (depth > *at->depth || EW_TRACE) {
+            divisor d = divisor_of(w, newton);
+#if EW_TRACE
+            fill_textured(at, k, over_w(u, d), 0, over_w(v, d), 0, 1);
+            continue;
+#else
+            uint32_t column = ((over_w(u, d) << k->u_shift) + k->u_base) >> k->turn;
+            uint32_t row = ((over_w(v, d) << k->v_shift) + k->v_base) >> (32 - k->log2_height);
+            *at->depth = (uint16_t)depth;
+            *at->colour = k->texels[(row << (32 - k->turn)) + column];
+#endif
+        }
+        at->depth++;
+        at->colour++;
+        at->w += at->dw;
+    }
+    l->w = w, l->u = u, l->v = v;
+}
+
+NOINLINE void piece_of_texture(const ew_raster *raster, const ew_triangle *t, cursor *place, linear *from, int32_t n)
+{
+    packing k;
+    packing_init(&k, raster, t);
+    cursor at = *place;
+    linear l = *from;
+    if (t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_CONSTANT) {
+        fill_textured(&at, &k, l.u, l.du, l.v, l.dv, n);
+        return;
+    }
+    const int newton = t->newton;
+    if (t->rung == EW_RUNG_TABLE || t->rung == EW_RUNG_EXACT) {
+        textured_pixels(&at, &k, &l, newton, n);
+        return;
+    }
+    for (;;) {
+        int32_t m = (int32_t)run_length(t, l.w, l.dw, l.align);
+        if (m < 2 && n > 1) {
+            m = smaller(n, 4);
+            textured_pixels(&at, &k, &l, newton, m);
+            n -= m;
+            if (n == 0) return;
+            continue;
+        }
+        if (m > n || n == 1) m = n;
+        uint32_t half = (uint32_t)m >> 1;
+        divisor d = divisor_of(l.w + l.dw * half, newton);
+        uint32_t u = over_w(l.u + l.du * half, d), v = over_w(l.v + l.dv * half, d);
+        uint32_t du = slope(u, l.du, l.dw, d), dv = slope(v, l.dv, l.dw, d);
+        fill_textured(&at, &k, u - du * half, du, v - dv * half, dv, m);
+        n -= m;
+        if (n == 0) return;
+        l.w += l.dw * (uint32_t)m;
+        l.u += l.du * (uint32_t)m;
+        l.v += l.dv * (uint32_t)m;
+    }
+}
+
+/* ---- everything else ---- */
+
+/* A shade inside its range at both ends is inside everywhere: a tangent may leave it. */
+static int32_t clamp_shade(int32_t s) { return s < 0 ? 0 : s > (1 << 24) ? 1 << 24 : s; }
+
+static void shade_run(ew_run *run, const ew_triangle *t, const attribute_run *from, int32_t n)
+{
+    enum { DOWN = EW_FRACTION(EW_SHADE_BITS) - 16 };
+    for (int i = 0; i < 3; i++) {
+        /* rounds to nearest where fill.c drops the fraction */
+        int32_t origin = t->shade_origin[i] * 16 + (1 << 15), step = EW_ASR((int32_t)from->dshade[i], DOWN);
+        int32_t start = origin + EW_ASR((int32_t)from->shade[i], DOWN), end = start + step * (n - 1);
+        run->shade[i] = clamp_shade(start);
+        run->dshade[i] = step;
+        if ((start != run->shade[i] || end != clamp_shade(end)) && n > 1) {
+            run->dshade[i] = (clamp_shade(end) - run->shade[i]) / (n - 1);
+        }
+    }
+}
+
+/* Where ew_fill_any goes on, and 1/z there. */
+typedef struct position {
+    uint16_t x, y;
+    uint32_t w, dw;
+} position;
+
+static void fill_any(const ew_raster *raster, const ew_triangle *t, position *at, const attribute_run *from, int32_t n)
+{
+    ew_run run;
+    run.x = at->x, run.y = at->y;
+    run.w = at->w, run.dw = at->dw;
+    run.u = run.v = run.du = run.dv = 0;
+    if (raster->texture.texels) {
+        int up = 32 - EW_FRACTION(t->uv_bits);
+        run.u = ((uint64_t)(int64_t)t->u_origin << 20) + ((uint64_t)(int64_t)(int32_t)from->u << up);
+        run.v = ((uint64_t)(int64_t)t->v_origin << 20) + ((uint64_t)(int64_t)(int32_t)from->v << up);
+        run.du = (uint64_t)(int64_t)(int32_t)from->du << up;
+        run.dv = (uint64_t)(int64_t)(int32_t)from->dv << up;
+    }
+    if (raster->material.flags & EW_SHADED) shade_run(&run, t, from, n);
+    ew_fill_any(raster, &run, n);
+    at->x = (uint16_t)(at->x + n);
+    at->w += at->dw * (uint32_t)n;
+}
+
+/* A run of m pixels as the tangent at pixel `half`; the slopes are those of its middle. */
+static void run_of_any(attribute_run *run, const ew_raster *raster, const linear *l, int newton, uint32_t half)
+{
+    divisor d = divisor_of(l->w + l->dw * half, newton);
+    uint32_t u = over_w(l->u + l->du * half, d), v = over_w(l->v + l->dv * half, d);
+    run->du = half ? slope(u, l->du, l->dw, d) : 0;
+    run->dv = half ? slope(v, l->dv, l->dw, d) : 0;
+    run->u = u - run->du * half;
+    run->v = v - run->dv * half;
+    if (!(raster->material.flags & EW_SHADED)) return;
+    for (int i = 0; i < 3; i++) {
+        uint32_t s = over_w(l->shade[i] + l->dshade[i] * half, d);
+        run->dshade[i] = half ? slope(s, l->dshade[i], l->dw, d) : 0;
+        run->shade[i] = s - run->dshade[i] * half;
+    }
+}
+
+NOINLINE void piece_of_any(const ew_raster *raster, const ew_triangle *t, position *at, linear *l, int32_t n)
+{
+    attribute_run run;
+    if (t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_CONSTANT) {
+        run.u = l->u, run.du = l->du, run.v = l->v, run.dv = l->dv;
+        for (int i = 0; i < 3; i++) run.shade[i] = l->shade[i], run.dshade[i] = l->dshade[i];
+        fill_any(raster, t, at, &run, n);
+        return;
+    }
+    while (n > 0) {
+        int32_t m = t->rung == EW_RUNG_TABLE || t->rung == EW_RUNG_EXACT ? 1 : (int32_t)run_length(t, l->w, l->dw, l->align);
+        m = larger(1, smaller(m, n));
+        run_of_any(&run, raster, l, t->newton, (uint32_t)m >> 1);
+        fill_any(raster, t, at, &run, m);
+        n -= m;
+        l->w += l->dw * (uint32_t)m;
+        l->u += l->du * (uint32_t)m;
+        l->v += l->dv * (uint32_t)m;
+        for (int i = 0; i < 3; i++) l->shade[i] += l->dshade[i] * (uint32_t)m;
+    }
+}
+
+/* ---- spans ---- */
 
 /* 1/z is linear: the first pixel's and the last's say whether any in between leaves depth's
  * range. */
@@ -114,192 +327,143 @@ ALWAYS_INLINE int is_plain(const ew_triangle *t, uint32_t w, uint32_t dw, int32_
     return w >= 32768u && w <= INT32_MAX && last >= 32768u && last <= INT32_MAX;
 }
 
-ALWAYS_INLINE void fill(const ew_raster *raster, cursor *at, const texture_run *run, int32_t n, int plain)
+/* A piece of a span, of at most EW_LONGEST_RUN pixels: (x, y) is `offset` into the target. */
+ALWAYS_INLINE void piece(const ew_raster *raster, const ew_triangle *t, linear *l, int32_t x, int32_t y, size_t offset,
+                         int32_t n)
 {
-    if (plain) fill_textured(raster, at, run, n);
-    else fill_any(raster, at, run, n);
+    /* w' = w 2^(lead - 1) */
+    int down = t->w_lead + l->align;
+    uint32_t w = (l->w >> down) << 1, dw = (uint32_t)EW_ASR((int32_t)l->dw, down) << 1;
+    if (is_plain(t, w, dw, n)) {
+        cursor at;
+        at.colour = raster->target.colour + offset;
+        at.depth = raster->target.depth + offset;
+        at.w = w, at.dw = dw;
+#if EW_TRACE
+        at.x = (uint16_t)x, at.y = (uint16_t)y;
+#endif
+        piece_of_texture(raster, t, &at, l, n);
+    } else {
+        position at;
+        at.x = (uint16_t)x, at.y = (uint16_t)y;
+        at.w = w, at.dw = dw;
+        piece_of_any(raster, t, &at, l, n);
+    }
 }
 
-/* ---- u and v at a pixel ---- */
-
-/* (u/z) / (1/z) with EW_UV_FRACTION(triangle) fraction bits: the quantity is normalised
- * together with w, so that its product with the reciprocal always has the same scale. */
-ALWAYS_INLINE int32_t over_w(uint32_t uw, int lead, uint32_t reciprocal)
+ALWAYS_INLINE void span_of_narrow(const ew_raster *raster, const ew_triangle *t, int32_t x, int32_t y, size_t offset,
+                                  int32_t n)
 {
-    return ew_mulh_s32((int32_t)(uw << lead), (int32_t)reciprocal); /* |uw << lead| < 2^31: triangle.c leaves the room */
-}
-
-/* A divisor made ready: 1/w. */
-typedef struct divisor {
-    uint32_t reciprocal;
-    int lead;
-} divisor;
-
-/* w is brought into the range that the set-up allowed for, 1 <= w < 2^(32 - w_lead): the
- * rounding of steps may carry a value near 0 out of it. */
-ALWAYS_INLINE divisor divisor_of(const ew_triangle *t, uint32_t w, int newton)
-{
-    uint32_t top = 0xFFFFFFFFu >> t->w_lead;
-    if (w < 1) w = 1;
-    if (w > top) w = top;
-    int zeros = ew_clz32(w);
-    divisor d;
-    d.reciprocal = newton ? ew_recip_newton(w << zeros) : ew_recip_table(w << zeros);
-    d.lead = zeros - t->w_lead;
-    return d;
-}
-
-/* u with its fraction bits, top-aligned, the first corner's added. */
-ALWAYS_INLINE uint32_t top_aligned(int32_t u, int shift, uint32_t base) { return ((uint32_t)u << shift) + base; }
-
-/* ---- runs ---- */
-
-/* One run for each pixel. */
-static void span_per_pixel(const ew_raster *raster, const ew_triangle *t, cursor *at, uint64_t w, uint64_t uw,
-                           uint64_t vw, int32_t n)
-{
-    const int newton = t->rung == EW_RUNG_EXACT;
-    const uint16_t *texels = raster->texture.texels;
-    texture_run run;
-    run.du = run.dv = 0;
-    at->dw = 0;
-    int plain = is_plain(t, (uint32_t)(w >> 32), t->w.step, n);
-    for (; n > 0; n--, w += t->w.dx, uw += t->u.dx, vw += t->v.dx) {
-        at->w = (uint32_t)(w >> 32);
-        uint32_t depth = at->w >> 15;
-        if (plain && depth <= *at->depth && !EW_TRACE) {
-            at->depth++;
-            at->colour++;
-            at->x++;
-            continue;
+    const ew_plane32 *p = t->plane.narrow;
+    uint32_t columns = (uint32_t)(x - t->column);
+    linear l;
+    l.align = 0;
+    l.w = p[EW_PLANE_W].row + p[EW_PLANE_W].dx * columns;
+    l.dw = p[EW_PLANE_W].dx;
+    l.u = l.du = l.v = l.dv = 0;
+    if (t->attributes) {
+        l.u = p[EW_PLANE_U].row + p[EW_PLANE_U].dx * columns;
+        l.du = p[EW_PLANE_U].dx;
+        l.v = p[EW_PLANE_V].row + p[EW_PLANE_V].dx * columns;
+        l.dv = p[EW_PLANE_V].dx;
+        if (t->attributes > 2) {
+            for (int i = 0; i < 3; i++) {
+                l.shade[i] = p[EW_PLANE_SHADE + i].row + p[EW_PLANE_SHADE + i].dx * columns;
+                l.dshade[i] = p[EW_PLANE_SHADE + i].dx;
+            }
         }
-        divisor d = divisor_of(t, at->w, newton);
-        run.u = top_aligned(over_w((uint32_t)(uw >> 32), d.lead, d.reciprocal), t->u_shift, t->u_base);
-        run.v = top_aligned(over_w((uint32_t)(vw >> 32), d.lead, d.reciprocal), t->v_shift, t->v_base);
-        if (plain && !EW_TRACE) {
-            *at->depth++ = (uint16_t)depth;
-            *at->colour++ = texels[texel_of(run.v, raster->log2_height) << raster->log2_width |
-                                   texel_of(run.u, raster->log2_width)];
-            at->x++;
+    }
+    piece(raster, t, &l, x, y, offset, n);
+}
+
+/* w' at two ends, aligned to the left as far as both allow; w' of a sliver's plane may come
+ * out at or below 0. */
+static int alignment(uint64_t w, uint64_t end, uint32_t *least)
+{
+    int64_t a = (int64_t)w, b = (int64_t)end, top = a > b ? a : b, bottom = a > b ? b : a;
+    int up = top > 0 ? ew_clz64((uint64_t)top) - 1 : 0;
+    *least = bottom > 0 ? (uint32_t)(((uint64_t)bottom << up) >> 32) : 0;
+    return up;
+}
+
+static uint32_t top_of(uint64_t a, int up) { return (uint32_t)((a << up) >> 32); }
+
+/* The longest piece, from the first pixel on, whose 32-bit steps keep attributes within 1/256
+ * texel: n 2^bits <= 4 w' at its far end (docs/error-bound.md). */
+static int32_t piece_length(const ew_triangle *t, uint64_t w, int32_t n, int *align)
+{
+    uint32_t least;
+    *align = 0;
+    n = smaller(n, EW_LONGEST_RUN);
+    /* affine: half a unit a step, 1/128 texel */
+    if (t->rung == EW_RUNG_AFFINE) return smaller(n, larger(1, (int32_t)1 << (EW_FRACTION(t->uv_bits) - 6)));
+    if (t->attributes == 0) return n;
+    for (;; n = (n + 1) >> 1) {
+        *align = alignment(w, w + ew_wrap_mul64(t->plane.wide[EW_PLANE_W].dx, n - 1), &least);
+        if (n == 1 || (uint64_t)(uint32_t)n << t->uv_bits <= (uint64_t)least << 2) return n;
+    }
+}
+
+NOINLINE void span_of_wide(const ew_raster *raster, const ew_triangle *t, int32_t x, int32_t y, size_t offset, int32_t n)
+{
+    const ew_plane64 *p = t->plane.wide;
+    while (n > 0) {
+        uint64_t at[EW_PLANES];
+        uint32_t dx[EW_PLANES];
+        linear l;
+        at[0] = p[0].row + ew_wrap_mul64(p[0].dx, x - t->column);
+        int32_t m = piece_length(t, at[0], n, &l.align);
+        for (int i = 0; i <= t->attributes; i++) {
+            if (i) at[i] = p[i].row + ew_wrap_mul64(p[i].dx, x - t->column);
+            dx[i] = top_of(p[i].dx, l.align);
+        }
+        l.w = (int64_t)at[0] > 0 ? top_of(at[0], l.align) : 1; /* then m is 1 */
+        l.dw = dx[0];
+        l.u = l.du = l.v = l.dv = 0;
+        if (t->attributes) {
+            l.u = top_of(at[EW_PLANE_U], l.align), l.du = dx[EW_PLANE_U];
+            l.v = top_of(at[EW_PLANE_V], l.align), l.dv = dx[EW_PLANE_V];
+            for (int i = 0; i < t->attributes - 2; i++) {
+                l.shade[i] = top_of(at[EW_PLANE_SHADE + i], l.align), l.dshade[i] = dx[EW_PLANE_SHADE + i];
+            }
+        }
+        piece(raster, t, &l, x, y, offset, m);
+        x += m;
+        offset += (size_t)m;
+        n -= m;
+    }
+}
+
+/* ---- rows ---- */
+
+int ew_walk_rows(const ew_raster *raster, ew_triangle *t, ew_edge *left, ew_edge *right, int32_t row, int32_t end)
+{
+    int reached = 0;
+    const int32_t clip_left = raster->scissor.x0, clip_right = raster->scissor.x1;
+    ew_edge l = *left, r = *right; /* or they would be read and written around each span */
+    size_t offset = (size_t)row * raster->target.stride;
+    for (; row < end; row++, offset += raster->target.stride) {
+        int32_t x0 = larger(l.x, clip_left), x1 = smaller(r.x, clip_right);
+        if (x0 < x1) {
+            if (t->is_wide) span_of_wide(raster, t, x0, row, offset + (size_t)x0, x1 - x0);
+            else span_of_narrow(raster, t, x0, row, offset + (size_t)x0, x1 - x0);
+            reached = 1;
+        }
+        ew_edge_step(&l);
+        ew_edge_step(&r);
+        if (t->is_wide) {
+            for (int i = 0; i <= t->attributes; i++) t->plane.wide[i].row += t->plane.wide[i].dy;
         } else {
-            fill_any(raster, at, &run, 1);
+            ew_plane32 *p = t->plane.narrow;
+            p[EW_PLANE_W].row += p[EW_PLANE_W].dy;
+            if (t->attributes) {
+                p[EW_PLANE_U].row += p[EW_PLANE_U].dy;
+                p[EW_PLANE_V].row += p[EW_PLANE_V].dy;
+                for (int i = 2; i < t->attributes; i++) p[i + 1].row += p[i + 1].dy;
+            }
         }
     }
-}
-
-/* The longest run, as a power of two, that the bound allows from a pixel with 1/z = w:
- * the largest k with t->run_floor 4^k <= min(w, w + 2^k dw). */
-ALWAYS_INLINE int run_log2(const ew_triangle *t, uint32_t w, uint32_t dw)
-{
-    enum { LONGEST = 9 }; /* FAST_RUN */
-    int k = (ew_clz32(t->run_floor) - ew_clz32(w)) >> 1;
-    if (k < 0) return 0;
-    if (k > LONGEST) k = LONGEST;
-    for (; k > 0; k--) {
-        uint32_t far_end = (int32_t)dw < 0 ? w + (dw << k) : w;
-        if (far_end <= w && far_end >> 2 * k >= t->run_floor) break;
-    }
-    return k;
-}
-
-/* What u grows by from pixel to pixel where it is u and u/z, w grow by du, dw:
- * (du/z - u dw) / w; `d` divides by that pixel's w. */
-ALWAYS_INLINE int32_t slope(const ew_triangle *t, int32_t u, uint32_t du, uint32_t dw, const divisor *d)
-{
-    int scale = 30 - t->w_lead; /* u = (u/z) / w 2^scale */
-    uint32_t turned = du - (uint32_t)EW_ASR(ew_mul_s32(u, (int32_t)dw), scale);
-    return over_w(turned, d->lead, d->reciprocal);
-}
-
-/* A span or its rest as one run, uw and vw at its first pixel: the tangent in its middle,
- * which needs one reciprocal. It is displaced as little as the chord (docs/error-bound.md). */
-static void span_as_one_run(const ew_raster *raster, const ew_triangle *t, cursor *at, uint32_t uw, uint32_t vw,
-                            int32_t n, int plain)
-{
-    uint32_t half = (uint32_t)n >> 1, dw = at->dw;
-    divisor d = divisor_of(t, at->w + dw * half, t->newton);
-    int32_t u = over_w(uw + t->u.step * half, d.lead, d.reciprocal);
-    int32_t v = over_w(vw + t->v.step * half, d.lead, d.reciprocal);
-    texture_run run;
-    run.du = top_aligned(slope(t, u, t->u.step, dw, &d), t->u_shift, 0);
-    run.dv = top_aligned(slope(t, v, t->v.step, dw, &d), t->v_shift, 0);
-    run.u = top_aligned(u, t->u_shift, t->u_base) - run.du * half;
-    run.v = top_aligned(v, t->v_shift, t->v_base) - run.dv * half;
-    for (; n > FAST_RUN; n -= FAST_RUN) {
-        fill(raster, at, &run, FAST_RUN, plain);
-        run.u += run.du * (uint32_t)FAST_RUN;
-        run.v += run.dv * (uint32_t)FAST_RUN;
-    }
-    fill(raster, at, &run, n, plain);
-}
-
-/* Runs chosen by the bound: chords, exact at their first pixel and at the next run's first,
- * but for the last. */
-static void span_by_bound(const ew_raster *raster, const ew_triangle *t, cursor *at, uint32_t uw, uint32_t vw, int32_t n,
-                          int plain)
-{
-    const uint32_t dw = at->dw;
-    int k = dw == 0 ? 30 : run_log2(t, at->w, dw);
-    if (n > (int32_t)1 << k) {
-        divisor d = divisor_of(t, at->w, t->newton);
-        int32_t u = over_w(uw, d.lead, d.reciprocal), v = over_w(vw, d.lead, d.reciprocal);
-        do {
-            texture_run run;
-            run.u = top_aligned(u, t->u_shift, t->u_base);
-            run.v = top_aligned(v, t->v_shift, t->v_base);
-            uw += t->u.step << k;
-            vw += t->v.step << k;
-            d = divisor_of(t, at->w + (dw << k), t->newton);
-            int32_t u_end = over_w(uw, d.lead, d.reciprocal), v_end = over_w(vw, d.lead, d.reciprocal);
-            run.du = top_aligned(EW_ASR(u_end - u, k), t->u_shift, 0);
-            run.dv = top_aligned(EW_ASR(v_end - v, k), t->v_shift, 0);
-            fill(raster, at, &run, (int32_t)1 << k, plain);
-            n -= (int32_t)1 << k;
-            u = u_end;
-            v = v_end;
-            k = run_log2(t, at->w, dw);
-        } while (n > (int32_t)1 << k);
-    }
-    span_as_one_run(raster, t, at, uw, vw, n, plain);
-}
-
-void ew_span(const ew_raster *raster, const ew_triangle *t, int32_t x, int32_t y, int32_t n)
-{
-    int32_t columns = x - t->column;
-    size_t offset = (size_t)y * raster->target.stride + (size_t)x;
-    cursor at;
-    at.colour = raster->target.colour + offset;
-    at.depth = raster->target.depth ? raster->target.depth + offset : NULL;
-    at.x = (uint16_t)x;
-    at.y = (uint16_t)y;
-    if (t->rung == EW_RUNG_EXACT || t->rung == EW_RUNG_TABLE) {
-        span_per_pixel(raster, t, &at, t->w.row + ew_wrap_mul64(t->w.dx, columns),
-                       t->u.row + ew_wrap_mul64(t->u.dx, columns), t->v.row + ew_wrap_mul64(t->v.dx, columns), n);
-        return;
-    }
-    at.w = (uint32_t)(t->w.row >> 32) + t->w.step * (uint32_t)columns;
-    at.dw = t->w.step;
-    texture_run run;
-    if (t->rung == EW_RUNG_CONSTANT) {
-        run.u = run.v = run.du = run.dv = 0;
-        fill_any(raster, &at, &run, n);
-        return;
-    }
-    int plain = is_plain(t, at.w, at.dw, n);
-    uint32_t u = (uint32_t)(t->u.row >> 32) + t->u.step * (uint32_t)columns;
-    uint32_t v = (uint32_t)(t->v.row >> 32) + t->v.step * (uint32_t)columns;
-    if (t->rung == EW_RUNG_RUNS) {
-        span_by_bound(raster, t, &at, u, v, n, plain);
-        return;
-    }
-    run.du = top_aligned((int32_t)t->u.step, t->u_shift, 0);
-    run.dv = top_aligned((int32_t)t->v.step, t->v_shift, 0);
-    run.u = top_aligned((int32_t)u, t->u_shift, t->u_base);
-    run.v = top_aligned((int32_t)v, t->v_shift, t->v_base);
-    for (; n > FAST_RUN; n -= FAST_RUN) {
-        fill(raster, &at, &run, FAST_RUN, plain);
-        run.u += run.du * (uint32_t)FAST_RUN;
-        run.v += run.dv * (uint32_t)FAST_RUN;
-    }
-    fill(raster, &at, &run, n, plain);
+    *left = l;
+    *right = r;
+    return reached;
 }

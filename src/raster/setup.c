@@ -1,0 +1,352 @@
+/* Triangle set-up: which rung, and the planes of 1/z, of attributes over z, or of attributes.
+ *
+ * Edges are made of snapped positions and are exact. Planes are made of the finer positions,
+ * q20.12: a silhouette triangle can gain thousands of depth units over one pixel, and there
+ * a snap of 1/512 px would already be wrong by several.
+ *
+ * Most triangles are narrow: of moderate size, not slivers, 1/z within a factor of four. Four
+ * gradients of barycentric weights in 32 bits make all their planes. Every other triangle is
+ * wide: exact 64-bit numerators over one reciprocal of the area, in arithmetic modulo 2^64.
+ * docs/error-bound.md has the errors of both.
+ *
+ * Source: K.-L. Low, "Perspective-Correct Interpolation", 2002, equations 12 and 16:
+ * 1/z and (attribute)/z are linear on the screen. Plane coefficients: docs/conventions.md.
+ */
+#include "triangle.h"
+
+static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
+static uint32_t smaller(uint32_t a, uint32_t b) { return a < b ? a : b; }
+
+/* ---- corners ---- */
+
+/* Differences from corner 0, in one place for both kinds of set-up. */
+typedef struct basis {
+    int32_t dx1, dy1, dx2, dy2; /* q20.12, |d| <= 2^30                                      */
+    int64_t area;               /* dx1 dy2 - dx2 dy1, |area| <= 2^61                        */
+    uint32_t reach;             /* the largest |d|                                          */
+    int32_t to_x, to_y;         /* from corner 0 to the pixel where planes stand, q20.12    */
+} basis;
+
+static void basis_init(basis *b, const int32_t x[3], const int32_t y[3], int32_t column, int32_t row)
+{
+    b->dx1 = x[1] - x[0], b->dy1 = y[1] - y[0];
+    b->dx2 = x[2] - x[0], b->dy2 = y[2] - y[0];
+    b->area = ew_mul_s32(b->dx1, b->dy2) - ew_mul_s32(b->dx2, b->dy1);
+    b->reach = larger(larger(ew_abs32(b->dx1), ew_abs32(b->dx2)), larger(ew_abs32(b->dy1), ew_abs32(b->dy2)));
+    b->to_x = column * 4096 + 2048 - x[0];
+    b->to_y = row * 4096 + 2048 - y[0];
+}
+
+/* ---- narrow triangles ---- */
+
+/* Gradients of the weights of corners 1 and 2, per q20.12 unit times 2^shift / 4096. */
+typedef struct weights {
+    int32_t x1, x2, y1, y2; /* |.| <= 2^30 */
+    int shift;              /* 26 to 38    */
+} weights;
+
+/* Whether 32 bits will do. With L the box and h the height of the triangle: L below 256 px,
+ * h at least L/8 and 1/8 px; 1/z within a factor of four; and what steps of 32 bits lose over
+ * all of its rows and columns is at most 1/256 texel (docs/error-bound.md). */
+static int is_narrow(const basis *b, const ew_corners *c, uint32_t w_min, uint32_t w_max, int bits)
+{
+    uint32_t steps = (uint32_t)(c->to - c->from) + (uint32_t)(c->end - c->first); /* <= 2^13 */
+    return b->reach < UINT32_C(1) << 20 && w_max / 4 <= w_min &&
+           (b->area > 0) == c->positive &&
+           ew_abs64(b->area) >= (uint64_t)ew_mul_u32(b->reach, b->reach / 8 + 512) &&
+           (uint64_t)(3 * steps) << bits <= (uint64_t)w_min << 2; /* 2^15 2^27 */
+}
+
+static void weights_init(weights *g, const basis *b)
+{
+    uint64_t area = ew_abs64(b->area);
+    int zeros = ew_clz64(area);
+    int32_t r = (int32_t)(ew_recip_newton((uint32_t)((area << zeros) >> 32)) - 1u); /* 1/area = r 2^(zeros - 94), < 2^31 */
+    int up = ew_clz32(b->reach) - 1;
+    if (b->area < 0) r = -r;
+    /* d 2^up < 2^31 */
+    g->x1 = ew_mulh_s32(b->dy2 * ((int32_t)1 << up), r);
+    g->x2 = ew_mulh_s32(-b->dy1 * ((int32_t)1 << up), r);
+    g->y1 = ew_mulh_s32(-b->dx2 * ((int32_t)1 << up), r);
+    g->y2 = ew_mulh_s32(b->dx1 * ((int32_t)1 << up), r);
+    /* d / area = weight 2^(zeros - 94 + 32 - up); 2^12 more for a pixel */
+    g->shift = 50 - zeros + up;
+}
+
+static void plane32_init(ew_plane32 *p, const basis *b, const weights *g, uint32_t a0, int32_t d1, int32_t d2)
+{
+    /* |d| < 2^31; height 1/8 px at least: gradients stay below 2^35 a pixel */
+    int64_t gx = EW_ASR(ew_mul_s32(d1, g->x1) + ew_mul_s32(d2, g->x2), g->shift);
+    int64_t gy = EW_ASR(ew_mul_s32(d1, g->y1) + ew_mul_s32(d2, g->y2), g->shift);
+    p->row = a0 + (uint32_t)EW_ASR(gx * b->to_x + gy * b->to_y, 12); /* 2^35 2^21 */
+    p->dx = (uint32_t)gx;
+    p->dy = (uint32_t)gy;
+}
+
+/* ---- wide triangles ---- */
+
+/* The numerators of a plane's gradients per 1/4096 px. */
+typedef struct numerators {
+    int64_t x, y; /* |.| <= 2^62 */
+} numerators;
+
+/* d1 and d2 are the quantity's differences from corner 0, |d| < 2^31. */
+static numerators numerators_of(const basis *b, int32_t d1, int32_t d2)
+{
+    numerators n;
+    n.x = ew_mul_s32(d1, b->dy2) - ew_mul_s32(d2, b->dy1);
+    n.y = ew_mul_s32(d2, b->dx1) - ew_mul_s32(d1, b->dx2);
+    if (b->area < 0) n.x = -n.x, n.y = -n.y;
+    return n;
+}
+
+/* Whether the plane, evaluated up to a snap's width (half a subpixel each way) outside of
+ * its triangle, stays within `limit` of the corners' values. limit <= 2^30. */
+static int stays_near(const basis *b, const numerators *n, uint32_t limit)
+{
+    /* (|nx| + |ny|) snap <= limit area, snap = 2^(11 - S) units of q20.12; both sides are
+     * shifted so that the area keeps at most 32 bits, the left side rounded up */
+    uint64_t area = ew_abs64(b->area);
+    int shift = ew_clz64(area) < 32 ? 32 - ew_clz64(area) : 0;
+    uint64_t sum = ew_abs64(n->x) + ew_abs64(n->y);                   /* <= 2^63 */
+    uint64_t allowed = ew_mul_u32((uint32_t)(area >> shift), limit);  /* <= 2^62 */
+    return (sum >> shift) + 1 <= allowed >> (11 - EW_SUBPIXEL_BITS);
+}
+
+/* n / area as a fraction of 2^64 where a unit of n is 2^-32: floor(n 2^32 / area), modulo
+ * 2^64. The reciprocal's error, below 2^-29, scales all gradients of the triangle alike:
+ * it moves a value by 2^-29 of its distance to corner 0's. 1/area = r 2^(zeros - 94). */
+static uint64_t over_area(int64_t n, uint32_t r, int zeros)
+{
+    /* n = h 2^32 + l: n r = t 2^32 + low, exact in 96 bits; |h r| <= 2^61. */
+    uint64_t low = ew_mul_u32((uint32_t)(uint64_t)n, r);
+    int64_t t = (int64_t)(int32_t)EW_ASR(n, 32) * (int64_t)r + (int64_t)(low >> 32);
+    int shift = 62 - zeros; /* -1 (area 1) to 60 */
+    if (shift >= 32) return (uint64_t)EW_ASR(t, shift - 32);
+    if (shift > 0) return ((uint64_t)t << (32 - shift)) | ((uint32_t)low >> shift);
+    return ((uint64_t)t << 32 | (uint32_t)low) << -shift;
+}
+
+static void plane64_init(ew_plane64 *p, const basis *b, uint32_t r, int zeros, uint32_t a0, int32_t d1, int32_t d2)
+{
+    const numerators n = numerators_of(b, d1, d2);
+    uint64_t gx = over_area(n.x, r, zeros), gy = over_area(n.y, r, zeros);
+    p->row = ((uint64_t)a0 << 32) + ew_wrap_mul64(gx, b->to_x) + ew_wrap_mul64(gy, b->to_y);
+    p->dx = gx << 12;
+    p->dy = gy << 12;
+}
+
+/* What planes are made of: values of w' and of all attributes at corners 1 and 2, less those
+ * at corner 0. */
+typedef struct differences {
+    int32_t d[EW_PLANES][2];
+} differences;
+
+/* Where the finer positions' planes could leave the values of the corners too far, those of
+ * the snapped ones are taken instead, which are never evaluated outside. */
+static void wide_planes(ew_triangle *t, basis *b, const ew_corners *c, const differences *of, uint32_t w0, uint32_t w_min,
+                        int32_t column)
+{
+    int near_enough = b->area != 0 && (b->area > 0) == c->positive;
+    /* as much again as attributes have at the farthest corner */
+    uint32_t attribute_limit = t->rung == EW_RUNG_AFFINE ? UINT32_C(1) << EW_BITS_MOST : w_min / 8;
+    for (int i = 0; i <= t->attributes && near_enough; i++) {
+        const numerators n = numerators_of(b, of->d[i][0], of->d[i][1]);
+        near_enough = stays_near(b, &n, i == EW_PLANE_W ? w_min / 4 : attribute_limit);
+    }
+    if (!near_enough) {
+        int32_t x[3], y[3];
+        for (int i = 0; i < 3; i++) {
+            x[i] = ew_q20_12_from_snapped(c->x[i]);
+            y[i] = ew_q20_12_from_snapped(c->y[i]);
+        }
+        basis_init(b, x, y, column, c->first);
+    }
+    uint64_t area = ew_abs64(b->area);
+    int zeros = ew_clz64(area);
+    uint32_t r = ew_recip_newton((uint32_t)((area << zeros) >> 32));
+    for (int i = 0; i <= t->attributes; i++) {
+        plane64_init(&t->plane.wide[i], b, r, zeros, i == EW_PLANE_W ? w0 : 0, of->d[i][0], of->d[i][1]);
+    }
+}
+
+/* ---- the ladder ---- */
+
+/* Never below the true distance of two corners, at most 12 % above it; q20.12. */
+static uint32_t length_of(const ew_raster_vertex *a, const ew_raster_vertex *b)
+{
+    uint32_t dx = ew_abs32(a->x - b->x), dy = ew_abs32(a->y - b->y); /* <= 2^30 */
+    return dx > dy ? dx + dy / 2 : dy + dx / 2;
+}
+
+/* Whether attributes drawn linearly over the whole triangle are displaced by at most the
+ * tolerance: max over edges of L |dw| <= 3 t w_min (docs/error-bound.md). */
+static int affine_suffices(const ew_raster_vertex *const v[3], uint32_t tolerance, uint32_t w_min)
+{
+    uint64_t allowed = (uint64_t)w_min * (3u * 256u * tolerance); /* q12: 2^31 2^18 */
+    for (int i = 0; i < 3; i++) {
+        const ew_raster_vertex *a = v[i], *b = v[i == 2 ? 0 : i + 1];
+        uint32_t dw = a->w > b->w ? a->w - b->w : b->w - a->w;
+        if (ew_mul_u32(length_of(a, b), dw) > allowed) return 0; /* <= 2^31 2^31 */
+    }
+    return 1;
+}
+
+/* Whether any point of the triangle is within the tolerance of every other. */
+static int constant_suffices(const ew_raster_vertex *const v[3], uint32_t tolerance)
+{
+    uint32_t t = tolerance * 256u;
+    return length_of(v[0], v[1]) <= t && length_of(v[1], v[2]) <= t && length_of(v[2], v[0]) <= t;
+}
+
+static uint8_t choose_rung(const ew_raster *raster, const ew_raster_vertex *const v[3], uint32_t w_min, int newton)
+{
+    const ew_material *m = &raster->material;
+    if (m->rung != EW_RUNG_AUTO) return m->rung;
+    if (m->tolerance > 0 && constant_suffices(v, m->tolerance)) return EW_RUNG_CONSTANT;
+    if (affine_suffices(v, m->tolerance, w_min)) return EW_RUNG_AFFINE;
+    return m->tolerance > 0 ? EW_RUNG_RUNS : newton ? EW_RUNG_EXACT : EW_RUNG_TABLE;
+}
+
+/* A run of N pixels is displaced by at most N^2 |dw| / (4 w) (docs/error-bound.md). The
+ * largest N is the root of 4 t w / |dw|; run_length in span.c takes (16 N)^2 as
+ * (w' / 2^15) run_scale 2^run_exponent. |dw| = m 2^-zeros, m normalised; 0 for m = 0. */
+static void run_scale_init(ew_triangle *t, uint32_t m, int zeros, uint32_t tolerance)
+{
+    t->run_scale = 0xFFFF; /* as long as they may be */
+    t->run_exponent = 100;
+    if (m == 0 || t->rung != EW_RUNG_RUNS) return;
+    /* 64 tolerance / |dw| = 64 k 2^15 2^zeros / 2^62 */
+    uint32_t k = (ew_recip_table(m) >> 15) * tolerance; /* < 2^25; tolerance > 0, r > 2^30 */
+    int up = ew_clz32(k);
+    t->run_scale = (uint16_t)(((k << up) >> 16) - 1u); /* less than the table's error: 2^-17 */
+    t->run_exponent = (int16_t)(zeros - up - 10);
+}
+
+static void runs_init(ew_triangle *t, const ew_raster *raster)
+{
+    t->longest = EW_LONGEST_RUN;
+    t->run_tolerance = t->rung == EW_RUNG_RUNS ? raster->material.tolerance : 0;
+    /* a slope is off by at most half a unit: over the longest run by 1/128 texel */
+    if (EW_FRACTION(t->uv_bits) < 15) t->longest = (uint16_t)(1u << (EW_FRACTION(t->uv_bits) - 6));
+    if (t->rung == EW_RUNG_RUNS_8) t->longest = 8;
+    if (t->rung == EW_RUNG_RUNS_16) t->longest = 16;
+    if (t->rung == EW_RUNG_RUNS_32) t->longest = 32;
+    if (t->is_wide) {
+        uint64_t dx = ew_abs64((int64_t)t->plane.wide[EW_PLANE_W].dx);
+        int zeros = ew_clz64(dx);
+        run_scale_init(t, dx ? (uint32_t)((dx << zeros) >> 32) : 0, zeros, raster->material.tolerance);
+    } else {
+        uint32_t dx = ew_abs32((int32_t)t->plane.narrow[EW_PLANE_W].dx);
+        run_scale_init(t, dx ? dx << ew_clz32(dx) : 0, ew_clz32(dx), raster->material.tolerance);
+    }
+}
+
+/* ---- attributes ---- */
+
+/* The table is off by 2^-17 of the distance to corner 0 with 256 entries or more, and by
+ * four times as much for each bit less: at most 1/256 texel for differences of TABLE_REACH
+ * bits. */
+enum { TABLE_REACH = 12 + 9 - (EW_RECIP_BITS < 8 ? 2 * (8 - EW_RECIP_BITS) : 0) };
+
+/* d w' / 2^(3 + bits), |d| < 2^bits; or d itself with its fraction bits for the affine rung. */
+static int32_t attribute(int32_t d, uint32_t w, int bits, int affine)
+{
+    if (affine) return d * ((int32_t)1 << (EW_BITS_MOST - bits));
+    return EW_ASR(ew_mulh_s32(d * ((int32_t)1 << (31 - bits)), (int32_t)w), 2); /* d w' 2^(31 - bits - 32 - 2) */
+}
+
+static uint8_t plainness(const ew_raster *raster, const ew_triangle *t, uint32_t w_min, uint32_t w_max)
+{
+    if (!raster->target.depth || (raster->material.flags & (EW_NO_DEPTH_TEST | EW_NO_DEPTH_WRITE)) ||
+        !raster->texture.texels || t->attributes > 2 ||
+        raster->log2_width < 1 || raster->log2_height < 1 || raster->log2_width + raster->log2_height > 16) {
+        return PLAIN_NEVER;
+    }
+    /* what lies outside of the corners (stays_near), and steps' rounding */
+    return w_min >= 65536u && w_max <= 0x50000000u ? PLAIN_ALWAYS : PLAIN_SOMETIMES;
+}
+
+/* 256 is all of a channel; q20.12. */
+static int32_t shade_of(uint8_t c) { return ((int32_t)c + (c >> 7)) * 4096; }
+
+/* Attribute planes' values at the corners; the origin of each. */
+static void textured(ew_triangle *t, differences *of, const ew_raster *raster, const ew_corners *c, const uint32_t w[3],
+                     int affine)
+{
+    int u_align = 32 - raster->log2_width, v_align = 32 - raster->log2_height; /* 21 at least */
+    const ew_raster_vertex *a = c->v[0];
+    t->u_shift = (uint8_t)(u_align - EW_FRACTION(t->uv_bits));
+    t->v_shift = (uint8_t)(v_align - EW_FRACTION(t->uv_bits));
+    t->u_base = (uint32_t)a->u << (u_align - 12);
+    t->v_base = (uint32_t)a->v << (v_align - 12);
+    t->u_origin = a->u;
+    t->v_origin = a->v;
+    for (int k = 0; k < 2; k++) {
+        const ew_raster_vertex *b = c->v[k + 1];
+        of->d[EW_PLANE_U][k] = attribute(b->u - a->u, w[k + 1], t->uv_bits, affine);
+        of->d[EW_PLANE_V][k] = attribute(b->v - a->v, w[k + 1], t->uv_bits, affine);
+    }
+}
+
+static void shaded(ew_triangle *t, differences *of, const ew_corners *c, const uint32_t w[3], int affine)
+{
+    for (int k = 0; k < 3; k++) {
+        const ew_colour888 *colour = &c->v[k]->colour;
+        const int32_t shade[3] = { shade_of(colour->r), shade_of(colour->g), shade_of(colour->b) };
+        for (int i = 0; i < 3; i++) {
+            if (k == 0) t->shade_origin[i] = shade[i];
+            else of->d[EW_PLANE_SHADE + i][k - 1] = attribute(shade[i] - t->shade_origin[i], w[k], EW_SHADE_BITS, affine);
+        }
+    }
+}
+
+int ew_setup(ew_triangle *t, const ew_raster *raster, const ew_corners *c)
+{
+    const ew_raster_vertex *const *v = c->v;
+    const int has_texture = raster->texture.texels != NULL, has_shades = (raster->material.flags & EW_SHADED) != 0;
+    uint32_t w_max = larger(larger(v[0]->w, v[1]->w), v[2]->w), w_min = smaller(smaller(v[0]->w, v[1]->w), v[2]->w);
+    t->attributes = (uint8_t)(has_shades ? 5 : has_texture ? 2 : 0);
+    t->uv_bits = has_shades ? EW_SHADE_BITS : EW_BITS_LEAST;
+    if (has_texture) {
+        uint32_t reach = larger(larger(ew_abs32(v[1]->u - v[0]->u), ew_abs32(v[2]->u - v[0]->u)), /* |u| < 2^30 */
+                                larger(ew_abs32(v[1]->v - v[0]->v), ew_abs32(v[2]->v - v[0]->v)));
+        int bits = 32 - ew_clz32(reach);
+        if (bits > EW_BITS_MOST) return EW_ERR_RANGE;
+        if (bits > t->uv_bits) t->uv_bits = (uint8_t)bits;
+    }
+    int needs_newton = t->uv_bits > TABLE_REACH;
+    t->rung = t->attributes ? choose_rung(raster, v, w_min, needs_newton) : EW_RUNG_CONSTANT;
+    t->newton = (uint8_t)(t->rung == EW_RUNG_EXACT || (needs_newton && t->rung != EW_RUNG_TABLE));
+
+    t->w_lead = (uint8_t)smaller((uint32_t)ew_clz32(w_max + w_max / 2), 24);
+    uint32_t w[3]; /* below 2^31 / 1.5: outside of the corners w may exceed the largest by a quarter */
+    for (int i = 0; i < 3; i++) w[i] = (v[i]->w << t->w_lead) >> 1;
+    differences of;
+    for (int k = 0; k < 2; k++) of.d[EW_PLANE_W][k] = (int32_t)(w[k + 1] - w[0]);
+    const int affine = t->rung == EW_RUNG_AFFINE;
+    for (int k = 0; k < 2; k++) of.d[EW_PLANE_U][k] = of.d[EW_PLANE_V][k] = 0;
+    if (has_texture) textured(t, &of, raster, c, w, affine);
+    if (has_shades) shaded(t, &of, c, w, affine);
+    t->plain = plainness(raster, t, w_min, w_max);
+    if (t->rung == EW_RUNG_CONSTANT) t->attributes = 0; /* corner 0's are taken everywhere */
+
+    int32_t x[3], y[3];
+    for (int i = 0; i < 3; i++) x[i] = v[i]->x, y[i] = v[i]->y;
+    basis b;
+    t->column = c->from;
+    basis_init(&b, x, y, c->from, c->first);
+    uint32_t least = smaller(smaller(w[0], w[1]), w[2]);
+    t->is_wide = (uint8_t)!is_narrow(&b, c, least, larger(larger(w[0], w[1]), w[2]), t->uv_bits);
+    if (t->is_wide) {
+        wide_planes(t, &b, c, &of, w[0], least, c->from);
+    } else {
+        weights g;
+        weights_init(&g, &b);
+        for (int i = 0; i <= t->attributes; i++) {
+            plane32_init(&t->plane.narrow[i], &b, &g, i == EW_PLANE_W ? w[0] : 0, of.d[i][0], of.d[i][1]);
+        }
+    }
+    runs_init(t, raster);
+    return EW_OK;
+}
