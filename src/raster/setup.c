@@ -215,12 +215,14 @@ static void run_scale_init(ew_triangle *t, uint32_t m, int zeros, uint32_t toler
 {
     t->run_scale = 0xFFFF; /* as long as they may be */
     t->run_exponent = 100;
+    t->run_shift = 0;
     if (m == 0 || t->rung != EW_RUNG_RUNS) return;
     /* 64 tolerance / |dw| = 64 k 2^15 2^zeros / 2^62 */
     uint32_t k = (ew_recip_table(m) >> 15) * tolerance; /* < 2^25; tolerance > 0, r > 2^30 */
     int up = ew_clz32(k);
     t->run_scale = (uint16_t)(((k << up) >> 16) - 1u); /* less than the table's error: 2^-17 */
     t->run_exponent = (int16_t)(zeros - up - 10);
+    if (t->run_exponent < 0) t->run_shift = (uint8_t)smaller((uint32_t)-t->run_exponent, 31);
 }
 
 static void runs_init(ew_triangle *t, const ew_raster *raster)
@@ -348,5 +350,7 @@ int ew_setup(ew_triangle *t, const ew_raster *raster, const ew_corners *c)
         }
     }
     runs_init(t, raster);
+    t->is_quick = t->plain == PLAIN_ALWAYS && t->attributes == 2 &&
+                  (t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_RUNS);
     return EW_OK;
 }

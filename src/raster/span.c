@@ -8,16 +8,9 @@
  * Spans step in 32 bits. Those of narrow triangles may, whatever they do; those of wide ones
  * are cut where steps would lose too much, and each piece is aligned anew from 64 bits.
  */
+#include "arch.h"
 #include "fill.h"
 #include "triangle.h"
-
-#if defined(__GNUC__)
-#define ALWAYS_INLINE static inline __attribute__((always_inline))
-#define NOINLINE static __attribute__((noinline))
-#else
-#define ALWAYS_INLINE static inline
-#define NOINLINE static
-#endif
 
 /* What is linear along a piece of a span, from its first pixel on. */
 typedef struct linear {
@@ -45,7 +38,7 @@ typedef struct divisor {
     int zeros;
 } divisor;
 
-ALWAYS_INLINE divisor divisor_of(uint32_t w, int newton)
+EW_ALWAYS_INLINE divisor divisor_of(uint32_t w, int newton)
 {
     divisor d;
     d.zeros = ew_clz32(w);
@@ -54,16 +47,16 @@ ALWAYS_INLINE divisor divisor_of(uint32_t w, int newton)
 }
 
 /* |a'| < w'/4: a' 2^zeros < 2^30, and twice that for the slopes of runs (triangle.h). */
-ALWAYS_INLINE uint32_t over_w(uint32_t a, divisor d)
+EW_ALWAYS_INLINE uint32_t over_w(uint32_t a, divisor d)
 {
     return (uint32_t)ew_mulh_s32((int32_t)(a << d.zeros), (int32_t)d.reciprocal);
 }
 
 /* What an attribute grows by from pixel to pixel where it is a and grow a' by da, w' by dw:
  * (da - a dw) / w'. */
-ALWAYS_INLINE uint32_t slope(uint32_t a, uint32_t da, uint32_t dw, divisor d)
+EW_ALWAYS_INLINE uint32_t slope(uint32_t a, uint32_t da, uint32_t dw, divisor d)
 {
-    return over_w(da - (uint32_t)EW_ASR(ew_mul_s32((int32_t)a, (int32_t)dw), 30), d);
+    return over_w(da - (uint32_t)ew_mulh_s32((int32_t)(a << 2), (int32_t)dw), d); /* a dw / 2^30; |a| < 2^29 */
 }
 
 
@@ -71,7 +64,7 @@ ALWAYS_INLINE uint32_t slope(uint32_t a, uint32_t da, uint32_t dw, divisor d)
 
 /* 16 sqrt(q), for q = product 2^exponent, from below: in each octave the chord of the root,
  * at most 2.2 % short. 16 EW_LONGEST_RUN at most. */
-ALWAYS_INLINE uint32_t root_of(uint32_t product, int exponent)
+EW_ALWAYS_INLINE uint32_t root_of(uint32_t product, int exponent)
 {
     int zeros = ew_clz32(product);
     uint32_t m = (product << zeros) >> 16; /* 2^15 to 2^16 */
@@ -87,7 +80,7 @@ ALWAYS_INLINE uint32_t root_of(uint32_t product, int exponent)
  * far end, so with q = 4 t w / |dw|, N = sqrt q where w grows along the run and
  * sqrt(q + 4 t^2) - 2 t where it falls. Twice within a run is as far as w may grow or fall,
  * for the run's slope to be a number of 32 bits: N <= w / |dw| = q / 4 t. */
-ALWAYS_INLINE uint32_t run_length(const ew_triangle *t, uint32_t w, uint32_t dw, int align)
+EW_ALWAYS_INLINE uint32_t run_length(const ew_triangle *t, uint32_t w, uint32_t dw, int align)
 {
     const uint32_t tolerance = t->run_tolerance;
     uint32_t n16 = root_of((w >> 15) * t->run_scale, t->run_exponent - align);
@@ -98,6 +91,15 @@ ALWAYS_INLINE uint32_t run_length(const ew_triangle *t, uint32_t w, uint32_t dw,
 }
 
 
+/* Whether a span of n pixels, at most EW_LONGEST_RUN, may be one run; as in run_length. */
+EW_ALWAYS_INLINE int one_run_suffices(const ew_triangle *t, uint32_t w, uint32_t dw, int32_t n)
+{
+    /* the tangent's far end is the mirrored first pixel: one beyond the last where n is even */
+    int32_t far_end = smaller((int32_t)w, (int32_t)(w + dw * (uint32_t)n));
+    return far_end > 0 && 4u * (uint32_t)n >= t->run_tolerance &&
+           (uint32_t)(n * n) << 8 <= ((uint32_t)far_end >> 15) * t->run_scale >> t->run_shift;
+}
+
 /* ---- textured, depth tested and written: the common case ---- */
 
 /* How a run's u and v become one texel number (t->plain says where this will do: depth inside
@@ -106,129 +108,151 @@ ALWAYS_INLINE uint32_t run_length(const ew_triangle *t, uint32_t w, uint32_t dw,
  * the texel number together; what v's texel carries goes into u's fraction, 512 times 2^-16
  * texel at most. */
 typedef struct packing {
-    const uint16_t *texels;
-    uint32_t low, mask;
-    uint8_t log2_height, turn, u_shift, v_shift;
+    ew_pixel_loop loop;
+    uint16_t *colour, *depth; /* where the next pixel goes                                */
+    uint32_t low;             /* bits of v's texel                                        */
     uint32_t u_base, v_base;
-} packing;
-
-ALWAYS_INLINE void packing_init(packing *k, const ew_raster *raster, const ew_triangle *t)
-{
-    k->texels = raster->texture.texels;
-    k->log2_height = raster->log2_height;
-    k->turn = (uint8_t)(32 - raster->log2_width);
-    k->low = (UINT32_C(1) << raster->log2_height) - 1u;
-    k->mask = (k->low + 1u) * (UINT32_C(1) << raster->log2_width) - 1u;
-    k->u_shift = t->u_shift, k->v_shift = t->v_shift;
-    k->u_base = t->u_base, k->v_base = t->v_base;
-}
-
-/* Where the next pixel goes, and its 1/z as uq1.31. */
-typedef struct cursor {
-    uint16_t *colour, *depth;
-    uint32_t w, dw;
+    uint8_t log2_height, u_shift, v_shift, newton;
 #if EW_TRACE
     uint16_t x, y;
 #endif
-} cursor;
+} packing;
 
-/* n pixels, n at most EW_LONGEST_RUN. */
-ALWAYS_INLINE void fill_textured(cursor *at, const packing *k, uint32_t u, uint32_t du, uint32_t v, uint32_t dv, int32_t n)
+static void packing_init(packing *k, const ew_raster *raster, const ew_triangle *t)
 {
-    const uint16_t *texels = k->texels;
-    const uint32_t mask = k->mask, turn = k->turn;
+    k->loop.texels = raster->texture.texels;
+    k->loop.turn = 32u - raster->log2_width;
+    k->low = (UINT32_C(1) << raster->log2_height) - 1u;
+    k->loop.mask = (k->low + 1u) * (UINT32_C(1) << raster->log2_width) - 1u;
+    k->log2_height = raster->log2_height;
+    k->u_shift = t->u_shift, k->v_shift = t->v_shift;
+    k->u_base = t->u_base, k->v_base = t->v_base;
+    k->newton = t->newton;
+}
+
+/* 1/z as uq1.31 at the next pixel, and its step. */
+EW_ALWAYS_INLINE void packing_depth(packing *k, const linear *l, int lead)
+{
+    int down = lead + l->align; /* w' = w 2^(lead - 1) */
+    k->loop.w = (l->w >> down) << 1;
+    k->loop.dw = (uint32_t)EW_ASR((int32_t)l->dw, down) << 1;
+}
+
+#if EW_TRACE
+static void trace(packing *k)
+{
+    const ew_pixel_loop *p = &k->loop;
+    uint32_t v = p->high << (32 - k->log2_height) | p->low >> k->log2_height;
+    /* q20.12, modulo the texture's size */
+    ew_trace_fragment(k->x++, k->y, (uint16_t)(p->w >> 15), (ew_q20_12)(p->high >> (p->turn - 12)),
+                      (ew_q20_12)(v >> (20 - k->log2_height)));
+}
+#else
+#define trace(k) ((void)0)
+#endif
+
+/* n > 0 pixels, n at most EW_LONGEST_RUN, of a run with u and v at its first pixel. */
+EW_NOINLINE void fill_textured(packing *k, uint32_t u, uint32_t du, uint32_t v, uint32_t dv, int32_t n)
+{
+    const int log2_height = k->log2_height;
+    const uint32_t low = k->low;
     /* top-aligned: 2^32 is the texture's size, so that repeating is the wrapping of 32 bits */
     u = (u << k->u_shift) + k->u_base, v = (v << k->v_shift) + k->v_base;
     du <<= k->u_shift, dv <<= k->v_shift;
-    uint64_t p = ((uint64_t)((u & ~k->low) | v >> (32 - k->log2_height)) << 32) | v << k->log2_height;
+    ew_pixel_loop *loop = &k->loop;
+    loop->high = (u & ~low) | v >> (32 - log2_height), loop->low = v << log2_height;
     /* v's step has a sign: extended over u's bits, or the sum would lose a borrow */
-    const uint64_t dp = ((uint64_t)((du & ~k->low) + (uint32_t)EW_ASR((int32_t)dv, 32 - k->log2_height)) << 32) |
-                        dv << k->log2_height;
-    uint16_t *z = at->depth, *c = at->colour;
-    uint16_t *const end = z + n;
-    uint32_t w = at->w;
-    const uint32_t dw = at->dw;
-    do {
-        uint32_t d = w >> 15, high = (uint32_t)(p >> 32);
-#if EW_TRACE
-        /* q20.12, modulo the texture's size */
-        ew_trace_fragment(at->x++, at->y, (uint16_t)d, (ew_q20_12)(high >> (turn - 12)),
-                          (ew_q20_12)(((high << (32 - k->log2_height)) | (uint32_t)(p & 0xFFFFFFFFu) >> k->log2_height) >>
-                                      (20 - k->log2_height)));
-#endif
-        if (d > *z) {
-            *z = (uint16_t)d;
-            *c = texels[(high << (32 - turn) | high >> turn) & mask];
+    loop->dhigh = (du & ~low) + (uint32_t)EW_ASR((int32_t)dv, 32 - log2_height), loop->dlow = dv << log2_height;
+    uint16_t *c = k->colour, *z = k->depth;
+    k->colour += n;
+    k->depth += n;
+#if EW_HAS_PIXEL_LOOP && !EW_TRACE
+    ew_fill_pixels(loop, c, z, n);
+#else
+    for (int32_t i = 0; i < n; i++) {
+        uint32_t d = loop->w >> 15, high = loop->high;
+        trace(k);
+        if (d > z[i]) {
+            z[i] = (uint16_t)d;
+            c[i] = loop->texels[(high << (32 - loop->turn) | high >> loop->turn) & loop->mask];
         }
-        w += dw;
-        p += dp;
-        c++;
-    } while (++z != end);
-    at->w = w;
-    at->depth = z;
-    at->colour = c;
+        loop->w += loop->dw;
+        loop->low += loop->dlow;
+        loop->high += loop->dhigh + (loop->low < loop->dlow ? 1u : 0u);
+    }
+#endif
+}
+
+/* A run of n pixels that is exact at its pixel `half`. */
+EW_NOINLINE void run_of_texture(packing *k, const linear *l, uint32_t half, int32_t n)
+{
+    uint32_t dw = l->dw, du = l->du, dv = l->dv;
+    divisor d = divisor_of(l->w + dw * half, k->newton);
+    uint32_t u = over_w(l->u + du * half, d), v = over_w(l->v + dv * half, d);
+    du = slope(u, du, dw, d), dv = slope(v, dv, dw, d);
+    fill_textured(k, u - du * half, du, v - dv * half, dv, n);
+}
+
+EW_ALWAYS_INLINE void advance(linear *l, uint32_t n)
+{
+    l->w += l->dw * n;
+    l->u += l->du * n;
+    l->v += l->dv * n;
 }
 
 /* Each pixel with a reciprocal of its own. */
-ALWAYS_INLINE void textured_pixels(cursor *at, const packing *k, linear *l, int newton, int32_t n)
+EW_NOINLINE void textured_pixels(packing *k, linear *l, int32_t n)
 {
-    uint32_t w = l->w, u = l->u, v = l->v;
-    for (; n > 0; n--, w += l->dw, u += l->du, v += l->dv) {
-        uint32_t depth = at->w >> 15;
-        if (depth > *at->depth || EW_TRACE) {
-            divisor d = divisor_of(w, newton);
 #if EW_TRACE
-            fill_textured(at, k, over_w(u, d), 0, over_w(v, d), 0, 1);
-            continue;
-#else
-            uint32_t column = ((over_w(u, d) << k->u_shift) + k->u_base) >> k->turn;
-            uint32_t row = ((over_w(v, d) << k->v_shift) + k->v_base) >> (32 - k->log2_height);
-            *at->depth = (uint16_t)depth;
-            *at->colour = k->texels[(row << (32 - k->turn)) + column];
-#endif
-        }
-        at->depth++;
-        at->colour++;
-        at->w += at->dw;
+    for (; n > 0; n--, advance(l, 1)) {
+        divisor d = divisor_of(l->w, k->newton);
+        fill_textured(k, over_w(l->u, d), 0, over_w(l->v, d), 0, 1);
     }
+#else
+    const uint16_t *texels = k->loop.texels;
+    const int turn = (int)k->loop.turn, log2_width = 32 - turn, v_down = 32 - k->log2_height;
+    uint32_t z = k->loop.w, w = l->w, u = l->u, v = l->v;
+    for (int32_t i = 0; i < n; i++, z += k->loop.dw, w += l->dw, u += l->du, v += l->dv) {
+        uint32_t depth = z >> 15;
+        if (depth <= k->depth[i]) continue;
+        divisor d = divisor_of(w, k->newton);
+        uint32_t column = ((over_w(u, d) << k->u_shift) + k->u_base) >> turn;
+        uint32_t row = ((over_w(v, d) << k->v_shift) + k->v_base) >> v_down;
+        k->depth[i] = (uint16_t)depth;
+        k->colour[i] = texels[(row << log2_width) + column];
+    }
+    k->loop.w = z;
     l->w = w, l->u = u, l->v = v;
+    k->depth += n;
+    k->colour += n;
+#endif
 }
 
-NOINLINE void piece_of_texture(const ew_raster *raster, const ew_triangle *t, cursor *place, linear *from, int32_t n)
+/* A piece of a span, of at most EW_LONGEST_RUN pixels. */
+EW_NOINLINE void piece_of_texture(packing *k, const ew_triangle *t, linear *l, int32_t n)
 {
-    packing k;
-    packing_init(&k, raster, t);
-    cursor at = *place;
-    linear l = *from;
     if (t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_CONSTANT) {
-        fill_textured(&at, &k, l.u, l.du, l.v, l.dv, n);
+        fill_textured(k, l->u, l->du, l->v, l->dv, n);
         return;
     }
-    const int newton = t->newton;
     if (t->rung == EW_RUNG_TABLE || t->rung == EW_RUNG_EXACT) {
-        textured_pixels(&at, &k, &l, newton, n);
+        textured_pixels(k, l, n);
         return;
     }
     for (;;) {
-        int32_t m = (int32_t)run_length(t, l.w, l.dw, l.align);
+        int32_t m = (int32_t)run_length(t, l->w, l->dw, l->align);
         if (m < 2 && n > 1) {
             m = smaller(n, 4);
-            textured_pixels(&at, &k, &l, newton, m);
+            textured_pixels(k, l, m);
             n -= m;
             if (n == 0) return;
             continue;
         }
         if (m > n || n == 1) m = n;
-        uint32_t half = (uint32_t)m >> 1;
-        divisor d = divisor_of(l.w + l.dw * half, newton);
-        uint32_t u = over_w(l.u + l.du * half, d), v = over_w(l.v + l.dv * half, d);
-        uint32_t du = slope(u, l.du, l.dw, d), dv = slope(v, l.dv, l.dw, d);
-        fill_textured(&at, &k, u - du * half, du, v - dv * half, dv, m);
+        run_of_texture(k, l, (uint32_t)m >> 1, m);
         n -= m;
         if (n == 0) return;
-        l.w += l.dw * (uint32_t)m;
-        l.u += l.du * (uint32_t)m;
-        l.v += l.dv * (uint32_t)m;
+        advance(l, (uint32_t)m);
     }
 }
 
@@ -294,7 +318,7 @@ static void run_of_any(attribute_run *run, const ew_raster *raster, const linear
     }
 }
 
-NOINLINE void piece_of_any(const ew_raster *raster, const ew_triangle *t, position *at, linear *l, int32_t n)
+EW_NOINLINE void piece_of_any(const ew_raster *raster, const ew_triangle *t, position *at, linear *l, int32_t n)
 {
     attribute_run run;
     if (t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_CONSTANT) {
@@ -320,7 +344,7 @@ NOINLINE void piece_of_any(const ew_raster *raster, const ew_triangle *t, positi
 
 /* 1/z is linear: the first pixel's and the last's say whether any in between leaves depth's
  * range. */
-ALWAYS_INLINE int is_plain(const ew_triangle *t, uint32_t w, uint32_t dw, int32_t n)
+EW_ALWAYS_INLINE int is_plain(const ew_triangle *t, uint32_t w, uint32_t dw, int32_t n)
 {
     if (t->plain != PLAIN_SOMETIMES) return t->plain;
     uint32_t last = w + dw * (uint32_t)(n - 1);
@@ -328,21 +352,22 @@ ALWAYS_INLINE int is_plain(const ew_triangle *t, uint32_t w, uint32_t dw, int32_
 }
 
 /* A piece of a span, of at most EW_LONGEST_RUN pixels: (x, y) is `offset` into the target. */
-ALWAYS_INLINE void piece(const ew_raster *raster, const ew_triangle *t, linear *l, int32_t x, int32_t y, size_t offset,
+EW_ALWAYS_INLINE void piece(const ew_raster *raster, const ew_triangle *t, linear *l, int32_t x, int32_t y, size_t offset,
                          int32_t n)
 {
     /* w' = w 2^(lead - 1) */
     int down = t->w_lead + l->align;
     uint32_t w = (l->w >> down) << 1, dw = (uint32_t)EW_ASR((int32_t)l->dw, down) << 1;
     if (is_plain(t, w, dw, n)) {
-        cursor at;
-        at.colour = raster->target.colour + offset;
-        at.depth = raster->target.depth + offset;
-        at.w = w, at.dw = dw;
+        packing k;
+        packing_init(&k, raster, t);
+        packing_depth(&k, l, t->w_lead);
+        k.colour = raster->target.colour + offset;
+        k.depth = raster->target.depth + offset;
 #if EW_TRACE
-        at.x = (uint16_t)x, at.y = (uint16_t)y;
+        k.x = (uint16_t)x, k.y = (uint16_t)y;
 #endif
-        piece_of_texture(raster, t, &at, l, n);
+        piece_of_texture(&k, t, l, n);
     } else {
         position at;
         at.x = (uint16_t)x, at.y = (uint16_t)y;
@@ -351,27 +376,28 @@ ALWAYS_INLINE void piece(const ew_raster *raster, const ew_triangle *t, linear *
     }
 }
 
-ALWAYS_INLINE void span_of_narrow(const ew_raster *raster, const ew_triangle *t, int32_t x, int32_t y, size_t offset,
-                                  int32_t n)
+/* Planes of w', u and v at x on the current row. */
+EW_ALWAYS_INLINE int narrow_start(linear *l, const ew_triangle *t, int32_t x)
 {
     const ew_plane32 *p = t->plane.narrow;
-    uint32_t columns = (uint32_t)(x - t->column);
+    uint32_t columns = (uint32_t)(x - t->column), dw = p[EW_PLANE_W].dx, du = p[EW_PLANE_U].dx, dv = p[EW_PLANE_V].dx;
+    l->align = 0;
+    l->w = p[EW_PLANE_W].row + dw * columns, l->dw = dw;
+    l->u = p[EW_PLANE_U].row + du * columns, l->du = du;
+    l->v = p[EW_PLANE_V].row + dv * columns, l->dv = dv;
+    return 1;
+}
+
+EW_NOINLINE void span_of_narrow(const ew_raster *raster, const ew_triangle *t, int32_t x, int32_t y, size_t offset,
+                                int32_t n)
+{
+    const ew_plane32 *p = &t->plane.narrow[EW_PLANE_SHADE];
     linear l;
-    l.align = 0;
-    l.w = p[EW_PLANE_W].row + p[EW_PLANE_W].dx * columns;
-    l.dw = p[EW_PLANE_W].dx;
-    l.u = l.du = l.v = l.dv = 0;
-    if (t->attributes) {
-        l.u = p[EW_PLANE_U].row + p[EW_PLANE_U].dx * columns;
-        l.du = p[EW_PLANE_U].dx;
-        l.v = p[EW_PLANE_V].row + p[EW_PLANE_V].dx * columns;
-        l.dv = p[EW_PLANE_V].dx;
-        if (t->attributes > 2) {
-            for (int i = 0; i < 3; i++) {
-                l.shade[i] = p[EW_PLANE_SHADE + i].row + p[EW_PLANE_SHADE + i].dx * columns;
-                l.dshade[i] = p[EW_PLANE_SHADE + i].dx;
-            }
-        }
+    narrow_start(&l, t, x);
+    if (t->attributes == 0) l.u = l.du = l.v = l.dv = 0;
+    for (int i = 0; i < t->attributes - 2; i++) {
+        l.shade[i] = p[i].row + p[i].dx * (uint32_t)(x - t->column);
+        l.dshade[i] = p[i].dx;
     }
     piece(raster, t, &l, x, y, offset, n);
 }
@@ -388,23 +414,41 @@ static int alignment(uint64_t w, uint64_t end, uint32_t *least)
 
 static uint32_t top_of(uint64_t a, int up) { return (uint32_t)((a << up) >> 32); }
 
-/* The longest piece, from the first pixel on, whose 32-bit steps keep attributes within 1/256
- * texel: n 2^bits <= 4 w' at its far end (docs/error-bound.md). */
+/* Whether 32-bit steps keep attributes within 1/128 texel over n pixels: n 2^bits <= 4 w' at
+ * both ends; affine, where w' does not matter: n 2^bits <= 2^33 (docs/error-bound.md). */
+EW_ALWAYS_INLINE int steps_suffice(const ew_triangle *t, uint32_t w, uint32_t last, int32_t n)
+{
+    int32_t least = smaller((int32_t)w, (int32_t)last); /* rounding may take it below 0 */
+    if (t->rung == EW_RUNG_AFFINE) least = INT32_MAX;
+    return n <= EW_LONGEST_RUN && n * ((int32_t)1 << (t->uv_bits - EW_BITS_LEAST)) <= EW_ASR(least, EW_BITS_LEAST - 2); /* 2^9 2^8 */
+}
+
+/* The same for wide triangles. Returns whether steps of 32 bits will do, unaligned. */
+EW_NOINLINE int wide_start(linear *l, const ew_triangle *t, int32_t x, int32_t n)
+{
+    const ew_plane64 *p = t->plane.wide;
+    x -= t->column;
+    l->align = 0;
+    l->w = top_of(p[EW_PLANE_W].row + ew_wrap_mul64(p[EW_PLANE_W].dx, x), 0), l->dw = top_of(p[EW_PLANE_W].dx, 0);
+    l->u = top_of(p[EW_PLANE_U].row + ew_wrap_mul64(p[EW_PLANE_U].dx, x), 0), l->du = top_of(p[EW_PLANE_U].dx, 0);
+    l->v = top_of(p[EW_PLANE_V].row + ew_wrap_mul64(p[EW_PLANE_V].dx, x), 0), l->dv = top_of(p[EW_PLANE_V].dx, 0);
+    return steps_suffice(t, l->w, l->w + l->dw * (uint32_t)(n - 1), n);
+}
+
+/* The longest piece, from the first pixel on, for which steps of 32 bits will do. */
 static int32_t piece_length(const ew_triangle *t, uint64_t w, int32_t n, int *align)
 {
-    uint32_t least;
+    uint32_t least = 0;
     *align = 0;
     n = smaller(n, EW_LONGEST_RUN);
-    /* affine: half a unit a step, 1/128 texel */
-    if (t->rung == EW_RUNG_AFFINE) return smaller(n, larger(1, (int32_t)1 << (EW_FRACTION(t->uv_bits) - 6)));
     if (t->attributes == 0) return n;
     for (;; n = (n + 1) >> 1) {
-        *align = alignment(w, w + ew_wrap_mul64(t->plane.wide[EW_PLANE_W].dx, n - 1), &least);
-        if (n == 1 || (uint64_t)(uint32_t)n << t->uv_bits <= (uint64_t)least << 2) return n;
+        if (t->rung != EW_RUNG_AFFINE) *align = alignment(w, w + ew_wrap_mul64(t->plane.wide[EW_PLANE_W].dx, n - 1), &least);
+        if (n == 1 || steps_suffice(t, least, least, n)) return n;
     }
 }
 
-NOINLINE void span_of_wide(const ew_raster *raster, const ew_triangle *t, int32_t x, int32_t y, size_t offset, int32_t n)
+EW_NOINLINE void span_of_wide(const ew_raster *raster, const ew_triangle *t, int32_t x, int32_t y, size_t offset, int32_t n)
 {
     const ew_plane64 *p = t->plane.wide;
     while (n > 0) {
@@ -436,8 +480,65 @@ NOINLINE void span_of_wide(const ew_raster *raster, const ew_triangle *t, int32_
 
 /* ---- rows ---- */
 
+/* To the next row; shades are rare. */
+EW_ALWAYS_INLINE void planes_step(ew_triangle *t)
+{
+    ew_plane32 *p = t->plane.narrow;
+    ew_plane64 *q = t->plane.wide;
+    if (t->is_wide) {
+        for (int i = 0; i <= t->attributes; i++) q[i].row += q[i].dy;
+        return;
+    }
+    p[EW_PLANE_W].row += p[EW_PLANE_W].dy;
+    p[EW_PLANE_U].row += p[EW_PLANE_U].dy; /* no harm where there are none */
+    p[EW_PLANE_V].row += p[EW_PLANE_V].dy;
+    for (int i = EW_PLANE_SHADE; i <= t->attributes; i++) p[i].row += p[i].dy;
+}
+
+/* Triangles with a texture, depth and nothing else, on the affine rung or in runs: ew_walk_rows
+ * for the common case. */
+EW_NOINLINE int rows_of_texture(const ew_raster *raster, ew_triangle *t, ew_edge *left, ew_edge *right, int32_t row,
+                                int32_t end)
+{
+    const int32_t clip_left = raster->scissor.x0, clip_right = raster->scissor.x1;
+    const int wide = t->is_wide, affine = t->rung == EW_RUNG_AFFINE;
+    const size_t offset = (size_t)row * raster->target.stride;
+    uint16_t *colour = raster->target.colour + offset, *depth = raster->target.depth + offset;
+    ew_edge l = *left, r = *right; /* or they would be read and written around each span */
+    int reached = 0;
+    linear s;
+    packing k;
+    packing_init(&k, raster, t);
+    for (; row < end; row++) {
+        int32_t x = larger(l.x, clip_left), n = smaller(r.x, clip_right) - x;
+        if (n > 0) {
+            k.colour = colour + x;
+            k.depth = depth + x;
+#if EW_TRACE
+            k.x = (uint16_t)x, k.y = (uint16_t)row;
+#endif
+            int whole = wide ? wide_start(&s, t, x, n) : narrow_start(&s, t, x);
+            packing_depth(&k, &s, t->w_lead);
+            if (!whole) span_of_wide(raster, t, x, row, (size_t)(k.colour - raster->target.colour), n);
+            else if (affine) fill_textured(&k, s.u, s.du, s.v, s.dv, n);
+            else if (one_run_suffices(t, s.w, s.dw, n)) run_of_texture(&k, &s, (uint32_t)n >> 1, n);
+            else piece_of_texture(&k, t, &s, n);
+            reached = 1;
+        }
+        ew_edge_step(&l);
+        ew_edge_step(&r);
+        planes_step(t);
+        colour += raster->target.stride;
+        depth += raster->target.stride;
+    }
+    *left = l;
+    *right = r;
+    return reached;
+}
+
 int ew_walk_rows(const ew_raster *raster, ew_triangle *t, ew_edge *left, ew_edge *right, int32_t row, int32_t end)
 {
+    if (t->is_quick) return rows_of_texture(raster, t, left, right, row, end);
     int reached = 0;
     const int32_t clip_left = raster->scissor.x0, clip_right = raster->scissor.x1;
     ew_edge l = *left, r = *right; /* or they would be read and written around each span */
@@ -451,17 +552,7 @@ int ew_walk_rows(const ew_raster *raster, ew_triangle *t, ew_edge *left, ew_edge
         }
         ew_edge_step(&l);
         ew_edge_step(&r);
-        if (t->is_wide) {
-            for (int i = 0; i <= t->attributes; i++) t->plane.wide[i].row += t->plane.wide[i].dy;
-        } else {
-            ew_plane32 *p = t->plane.narrow;
-            p[EW_PLANE_W].row += p[EW_PLANE_W].dy;
-            if (t->attributes) {
-                p[EW_PLANE_U].row += p[EW_PLANE_U].dy;
-                p[EW_PLANE_V].row += p[EW_PLANE_V].dy;
-                for (int i = 2; i < t->attributes; i++) p[i + 1].row += p[i + 1].dy;
-            }
-        }
+        planes_step(t);
     }
     *left = l;
     *right = r;

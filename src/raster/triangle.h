@@ -48,8 +48,10 @@ typedef struct ew_triangle {
     int16_t run_exponent;
     uint16_t run_tolerance;     /* 1/16 px, 0 for runs of fixed length           */
     uint16_t longest;           /* run, px                                       */
+    uint8_t run_shift;          /* -run_exponent, 0 to 31: of one_run_suffices   */
     uint8_t attributes;         /* how many planes follow that of w: 0, 2, 5     */
     uint8_t is_wide;
+    uint8_t is_quick;           /* rows_of_texture (span.c) will do              */
     uint8_t rung;               /* never EW_RUNG_AUTO                            */
     uint8_t newton;             /* whether the better reciprocal is needed       */
     uint8_t plain;              /* PLAIN_NEVER, PLAIN_SOMETIMES, PLAIN_ALWAYS    */

@@ -1,0 +1,130 @@
+/* What compilers do not find by themselves, per architecture (private to the raster layer).
+ * Each macro has a twin in C that gives the same bits; EW_PORTABLE selects the twins, and the
+ * tests compare both (docs/porting.md). */
+#ifndef EW_RASTER_ARCH_H
+#define EW_RASTER_ARCH_H
+
+#include <stdint.h>
+
+#if defined(__GNUC__)
+#define EW_ALWAYS_INLINE static inline __attribute__((always_inline))
+#define EW_NOINLINE static __attribute__((noinline))
+/* No instruction: keeps compilers from turning unrolled additions into sums that need more
+ * registers than there are. */
+#define EW_KEEP_ORDER(x) __asm__("" : "+r"(x))
+#else
+#define EW_ALWAYS_INLINE static inline
+#define EW_NOINLINE static
+#define EW_KEEP_ORDER(x) ((void)0)
+#endif
+
+/* The textured pixel loop of span.c: n > 0 pixels from *colour and *depth on, which must not
+ * overlap. What it does, as fill_textured's own loop has it:
+ *
+ *     if (w >> 15 > *depth) *depth = w >> 15, *colour = texels[rotated right(high, turn) & mask];
+ *     high:low += dhigh:dlow, w += dw, depth++, colour++;
+ *
+ * GCC needs 14 to 17 instructions for a pixel on Thumb-2 and 28 on ARMv6-M, spilling and
+ * moving around the carry; 12 and 19 are enough, and one more a pixel for the loop. */
+typedef struct ew_pixel_loop {
+    uint32_t w, dw, high, low, dhigh, dlow;
+    const uint16_t *texels;
+    uint32_t mask, turn;
+    const uint16_t *end, *rest;
+} ew_pixel_loop;
+
+#if defined(__GNUC__) && defined(__thumb__) && defined(__OPTIMIZE__) && !defined(EW_PORTABLE)
+#define EW_HAS_PIXEL_LOOP 1
+#if defined(__thumb2__)
+#define EW_PIXEL(offset) \
+    "ldrh %[t], [%[z], #" offset "]\n\t" \
+    "cmp %[t], %[w], lsr #15\n\t" \
+    "bcs 9f\n\t" \
+    "lsr %[t], %[w], #15\n\t" \
+    "strh %[t], [%[z], #" offset "]\n\t" \
+    "ror %[t], %[high], %[turn]\n\t" \
+    "and %[t], %[t], %[mask]\n\t" \
+    "ldrh %[t], [%[texels], %[t], lsl #1]\n\t" \
+    "strh %[t], [%[c], #" offset "]\n" \
+    "9:\tadds %[low], %[low], %[dlow]\n\t" \
+    "adc %[high], %[high], %[dhigh]\n\t" \
+    "add %[w], %[w], %[dw]\n\t"
+EW_ALWAYS_INLINE void ew_fill_pixels(ew_pixel_loop *k, uint16_t *c, uint16_t *z, int32_t n)
+{
+    uint32_t w = k->w, high = k->high, low = k->low, t;
+    __asm__ volatile("subs %[n], %[n], #4\n\t"
+                     "blt 2f\n"
+                     "1:\t" EW_PIXEL("0") EW_PIXEL("2") EW_PIXEL("4") EW_PIXEL("6")
+                     "adds %[z], %[z], #8\n\t"
+                     "adds %[c], %[c], #8\n\t"
+                     "subs %[n], %[n], #4\n\t"
+                     "bge 1b\n"
+                     "2:\tadds %[n], %[n], #4\n\t"
+                     "beq 4f\n"
+                     "3:\t" EW_PIXEL("0")
+                     "adds %[z], %[z], #2\n\t"
+                     "adds %[c], %[c], #2\n\t"
+                     "subs %[n], %[n], #1\n\t"
+                     "bne 3b\n"
+                     "4:"
+                     : [z] "+r"(z), [c] "+r"(c), [n] "+r"(n), [w] "+r"(w), [high] "+r"(high), [low] "+r"(low), [t] "=&r"(t)
+                     : [dw] "r"(k->dw), [dhigh] "r"(k->dhigh), [dlow] "r"(k->dlow), [texels] "r"(k->texels),
+                       [mask] "r"(k->mask), [turn] "r"(k->turn)
+                     : "cc", "memory");
+    k->w = w;
+}
+#else
+/* Eight low registers: what does not change is read from *k, as fast as from a high one. */
+#define EW_PIXEL(offset) \
+    "ldrh %[t], [%[z], #" offset "]\n\t" \
+    "lsrs %[d], %[w], #15\n\t" \
+    "cmp %[t], %[d]\n\t" \
+    "bcs 9f\n\t" \
+    "strh %[d], [%[z], #" offset "]\n\t" \
+    "mov %[d], %[high]\n\t" \
+    "ldr %[t], [%[k], #32]\n\t" \
+    "rors %[d], %[t]\n\t" \
+    "ldr %[t], [%[k], #28]\n\t" \
+    "ands %[d], %[t]\n\t" \
+    "lsls %[d], %[d], #1\n\t" \
+    "ldr %[t], [%[k], #24]\n\t" \
+    "ldrh %[d], [%[t], %[d]]\n\t" \
+    "strh %[d], [%[c], #" offset "]\n" \
+    "9:\tldr %[t], [%[k], #20]\n\t" \
+    "ldr %[d], [%[k], #16]\n\t" \
+    "adds %[low], %[low], %[t]\n\t" \
+    "adcs %[high], %[d]\n\t" \
+    "ldr %[t], [%[k], #4]\n\t" \
+    "adds %[w], %[w], %[t]\n\t"
+EW_ALWAYS_INLINE void ew_fill_pixels(ew_pixel_loop *k, uint16_t *c, uint16_t *z, int32_t n)
+{
+    uint32_t w = k->w, high = k->high, low = k->low, t, d;
+    k->end = z + (n & ~(int32_t)3);
+    k->rest = z + n;
+    __asm__ volatile(".syntax unified\n\t"
+                     "b 2f\n"
+                     "1:\t" EW_PIXEL("0") EW_PIXEL("2") EW_PIXEL("4") EW_PIXEL("6")
+                     "adds %[z], %[z], #8\n\t"
+                     "adds %[c], %[c], #8\n"
+                     "2:\tldr %[t], [%[k], #36]\n\t"
+                     "cmp %[z], %[t]\n\t"
+                     "bne 1b\n\t"
+                     "b 4f\n"
+                     "3:\t" EW_PIXEL("0")
+                     "adds %[z], %[z], #2\n\t"
+                     "adds %[c], %[c], #2\n"
+                     "4:\tldr %[t], [%[k], #40]\n\t"
+                     "cmp %[z], %[t]\n\t"
+                     "bne 3b\n\t"
+                     : [z] "+l"(z), [c] "+l"(c), [w] "+l"(w), [high] "+l"(high), [low] "+l"(low), [t] "=&l"(t), [d] "=&l"(d)
+                     : [k] "l"(k)
+                     : "cc", "memory");
+    k->w = w;
+}
+#endif
+#undef EW_PIXEL
+#else
+#define EW_HAS_PIXEL_LOOP 0
+#endif
+
+#endif
