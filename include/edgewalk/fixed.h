@@ -56,16 +56,36 @@ static inline uint32_t ew_mulh_u32_pieces(uint32_t a, uint32_t b)
 }
 static inline int32_t ew_mulh_s32_pieces(int32_t a, int32_t b)
 {
-    uint32_t high = ew_mulh_u32_pieces((uint32_t)a, (uint32_t)b);
-    return (int32_t)(high - (a < 0 ? (uint32_t)b : 0u) - (b < 0 ? (uint32_t)a : 0u));
+    /* the upper halves keep the sign: no correction is needed afterwards */
+    int32_t ah = EW_ASR(a, 16), al = a & 0xFFFF, bh = EW_ASR(b, 16), bl = b & 0xFFFF;
+    int32_t low = (int32_t)(((uint32_t)al * (uint32_t)bl) >> 16);
+    int32_t middle = ah * bl + low;                /* -2^15 (2^16 - 1) to 2^15 (2^16 - 1) */
+    int32_t other = al * bh + (middle & 0xFFFF);   /* likewise                            */
+    return ah * bh + EW_ASR(middle, 16) + EW_ASR(other, 16);
 }
-#if defined(__ARM_ARCH_6M__)
+#if !EW_LONG_MULTIPLY
 static inline int32_t ew_mulh_s32(int32_t a, int32_t b) { return ew_mulh_s32_pieces(a, b); }
 static inline uint32_t ew_mulh_u32(uint32_t a, uint32_t b) { return ew_mulh_u32_pieces(a, b); }
+#define ew_product_less ew_product_less_pieces
 #else
 static inline int32_t ew_mulh_s32(int32_t a, int32_t b) { return (int32_t)EW_ASR((int64_t)a * b, 32); }
 static inline uint32_t ew_mulh_u32(uint32_t a, uint32_t b) { return (uint32_t)(((uint64_t)a * b) >> 32); }
+#define ew_product_less ew_product_less_long
 #endif
+
+/* Whether a b < c d, for |a| ... |d| < 2^31 - 2^15. The second form tries 32 bits first, which
+ * most differences of corners fit. */
+static inline int ew_product_less_long(int32_t a, int32_t b, int32_t c, int32_t d)
+{
+    return ew_mul_s32(a, b) < ew_mul_s32(c, d);
+}
+static inline int ew_product_less_pieces(int32_t a, int32_t b, int32_t c, int32_t d)
+{
+    const int32_t half = INT32_C(0x8000);
+    uint32_t beyond = (uint32_t)(a + half) | (uint32_t)(b + half) | (uint32_t)(c + half) | (uint32_t)(d + half);
+    if (beyond >> 16 == 0) return a * b < c * d; /* |.| <= 2^30 */
+    return ew_product_less_long(a, b, c, d);
+}
 
 /* Magnitude; right for INT32_MIN and INT64_MIN too. */
 static inline uint32_t ew_abs32(int32_t a) { return a < 0 ? 0u - (uint32_t)a : (uint32_t)a; }
@@ -156,6 +176,29 @@ uint32_t ew_sqrt64(uint64_t n);
  * How the table's entries are chosen: fixed/recip_table.py. */
 uint32_t ew_recip_table(uint32_t m);
 uint32_t ew_recip_newton(uint32_t m);
+
+/* The same two without a call, for loops, and their table. */
+extern const uint16_t ew_recip_entries[(1 << EW_RECIP_BITS) + 1];
+static inline uint32_t ew_recip_table_inline(uint32_t m)
+{
+    /* m = 2^31 (1 + i/2^b + f/2^(b+16) + ...): the bits below f are worth less than the
+     * table's own rounding. */
+    uint32_t i = (m >> (31 - EW_RECIP_BITS)) & ((UINT32_C(1) << EW_RECIP_BITS) - 1u);
+    uint32_t f = (m >> (15 - EW_RECIP_BITS)) & 0xFFFFu;
+    uint32_t a = ew_recip_entries[i];
+    /* Falls from entry to entry by at most 2^17 / 17 (b = 4), so the product is below 2^29. */
+    uint32_t fall = (a - ew_recip_entries[i + 1]) * f;
+    /* Table units are 2^14 of the result; (2^16 + a) 2^14 < 2^31. */
+    return ((UINT32_C(65536) + a) << 14) - (fall >> 2);
+}
+static inline uint32_t ew_recip_newton_inline(uint32_t m)
+{
+    uint32_t r = ew_recip_table_inline(m);
+    /* m r = 2^62 (1 + d) with |d| < 2^-11, so t = 2^30 (1 + d), and the better reciprocal
+     * is r (1 - d) = r (2^31 - t) / 2^30, off by d^2. Twice each factor fits 32 bits. */
+    uint32_t t = ew_mulh_u32(m, r);
+    return ew_mulh_u32(r << 1, 0u - (t << 1));
+}
 
 /* ---- vectors ---- */
 

@@ -37,11 +37,24 @@ typedef struct ew_viewport {
     uint16_t width, height; /* px, 1 to 8192                                               */
 } ew_viewport;
 
+/* A row whose sums with q1.15 vertices fit 31 bits; the units are ew_transform's own. */
+typedef struct ew_row32 {
+    int32_t m[3];
+    int64_t rest;       /* 2^31 times (translation + 1 for rounding)                       */
+} ew_row32;
+
 /* Model space to the screen, homogeneous: px = x/w, py = y/w, depth = near/w. */
 typedef struct ew_transform {
     ew_row x, y, w;     /* here e_last = e                                                  */
     int64_t near_w;     /* the near distance in units of 2^(w.e - 45), those of row w's sums */
-    ew_viewport viewport;
+    ew_q20_12 left, top;      /* the viewport                                               */
+    uint32_t across, down;    /* in the same units                                          */
+    /* The same for the vertices that 32 bits suffice for: src/geometry/transform.c. */
+    ew_row32 x32, y32, w32;
+    int32_t w_safe;     /* sums of w32 from here on are beyond the near plane, and exact enough */
+    int32_t w_hidden;   /* sums below this are nearer than it                               */
+    uint32_t near_m;    /* near distance = near_m 2^-(near_shift + 3) in units of those sums */
+    int8_t near_shift, shift_x, shift_y;
 } ew_transform;
 
 /* Makes the transform for one model; `model_view` takes vertices as q1.15 to view space.
@@ -55,6 +68,9 @@ int ew_transform_set(ew_transform *transform, const ew_projection *projection,
  * they are off by at most 2^-28 of position + viewport, times (size + distance of the
  * model) / z of the vertex. So a vertex snaps within 0.75 subpixel of its
  * exact projection unless it is nearer than about 1/1000 of the model's size.
+ * Most vertices take the quick way, in 32 bits; those farther from the target's corner than
+ * about twice the viewport's size, nearer than twice the near distance or than about 1/200 of
+ * the model's size take four times as long.
  * `out` must not overlap `in`. */
 void ew_transform_vertices(const ew_transform *transform, const ew_vertex16 *in, uint32_t count,
                            ew_screen_vertex *out);

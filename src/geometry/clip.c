@@ -172,7 +172,7 @@ static int faces_the_eye(const ew_screen_vertex *const v[3])
     int32_t x0 = ew_snapped_from_q20_12(v[0]->x), y0 = ew_snapped_from_q20_12(v[0]->y);
     int32_t dx1 = ew_snapped_from_q20_12(v[1]->x) - x0, dy1 = ew_snapped_from_q20_12(v[1]->y) - y0;
     int32_t dx2 = ew_snapped_from_q20_12(v[2]->x) - x0, dy2 = ew_snapped_from_q20_12(v[2]->y) - y0;
-    return ew_mul_s32(dx1, dy2) < ew_mul_s32(dx2, dy1); /* |d| <= 2^26 */
+    return ew_product_less(dx1, dy2, dx2, dy1); /* |d| <= 2^26 */
 }
 
 void ew_geometry_init(ew_geometry *geometry, ew_raster *raster) { geometry->raster = raster; }
