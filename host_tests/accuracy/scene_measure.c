@@ -98,7 +98,8 @@ static int measure_primitive(const ew_scene *scene, uint32_t number_of, const ew
     if (error) return error;
     ew_transform_vertices(&geometry->transform, p.vertices, p.vertex_count, scratch);
     matrix box = exact(&p.dequantise), mv = times(node_view_exact, &box);
-    return measure_mesh(geometry, mv.m, p.vertices, scratch, p.indices, p.index_count, p.uv_fraction_bits);
+    const ew_mesh mesh = { p.vertices, scratch, NULL, p.indices, p.index_count, p.uv_fraction_bits };
+    return measure_mesh(geometry, mv.m, &mesh);
 }
 
 int measure_scene(const ew_scene *scene, const ew_scene_camera *camera, uint32_t time_ms, const ew_target *target,

@@ -87,7 +87,8 @@ static measures draw_random(const picture *p)
     }
     ew_transform_vertices(&geometry.transform, v, (uint32_t)(3 * p->triangles), screen);
     measure_begin(&target, &eye, 0);
-    assert_int_equal(measure_mesh(&geometry, exact, v, screen, index, (uint32_t)(3 * p->triangles), 8), 0);
+    const ew_mesh mesh = { v, screen, NULL, index, (uint32_t)(3 * p->triangles), 8 };
+    assert_int_equal(measure_mesh(&geometry, exact, &mesh), 0);
     measure_end(&m, 0.125);
     test_context("uv_off %g depth_off %g near %g size %g distance %g focal %g: %ld fragments, %ld wrong, %ld of the truth, vertex %.3f, depth %.3f, "
                  "u %.4f v %.4f", m.uv_off, m.depth_off, p->near_z, p->size, p->distance, p->focal, m.fragments, m.wrong_px, m.wrong_truth_px,
@@ -170,7 +171,8 @@ static void cut_edges_stay_shut(void **state)
             const ew_material material = { .colour = 1, .rung = EW_RUNG_CONSTANT, .flags = EW_DOUBLE_SIDED };
             ew_raster_set_material(&raster, &material);
             ew_raster_clear(&raster, 0);
-            assert_true(ew_draw_triangles(&geometry, v, screen, index + 3 * t, 3, 0) >= 0);
+            const ew_mesh mesh = { v, screen, NULL, index + 3 * t, 3, 0 };
+            assert_true(ew_draw_triangles(&geometry, &mesh) >= 0);
             for (int i = 0; i < W * H; i++) hits[i] = (uint8_t)(hits[i] + colour[i]);
         }
         /* in a row of the convex outline there is no gap, and nothing is hit twice */
@@ -226,7 +228,8 @@ static void a_corner_at_the_guard_band_keeps_its_place(void **state)
         memset(hits, 0, sizeof hits);
         for (int t = 0; t < 2; t++) {
             ew_raster_clear(&raster, 0);
-            assert_true(ew_draw_triangles(&geometry, v, screen, index + 3 * t, 3, 1) >= 0);
+            const ew_mesh mesh = { v, screen, NULL, index + 3 * t, 3, 1 };
+            assert_true(ew_draw_triangles(&geometry, &mesh) >= 0);
             for (int i = 0; i < SIZE * SIZE; i++) hits[i] = (uint8_t)(hits[i] + large[i]);
         }
         for (int x = 0; x < SIZE; x++) {
@@ -266,7 +269,8 @@ static void guard_band_drops_nothing(void **state)
         const ew_projection projection = { 65536, 87381, block(0.01) };
         assert_int_equal(ew_transform_set(&geometry.transform, &projection, &model_view, &viewport), EW_OK);
         ew_transform_vertices(&geometry.transform, v, 4, screen);
-        assert_true(ew_draw_triangles(&geometry, v, screen, index, 6, 0) > 0);
+        const ew_mesh mesh = { v, screen, NULL, index, 6, 0 };
+        assert_true(ew_draw_triangles(&geometry, &mesh) > 0);
         double horizon = H / 2 * (1 + 87381 / 65536.0 / (half * 32767 / 32768));
         for (int y = 0; y < H; y++) {
             for (int x = 0; x < W; x++) {

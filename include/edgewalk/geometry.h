@@ -20,8 +20,8 @@ typedef struct ew_vertex16 {
 
 /* A corner after the transform: 16 bytes. */
 typedef struct ew_screen_vertex {
-    ew_q20_12 x, y;   /* px; only with neither EW_OUT_NEAR nor EW_OUT_GUARD                */
     ew_uq1_31 w;      /* near/z                                                            */
+    ew_q20_12 x, y;   /* px; only with neither EW_OUT_NEAR nor EW_OUT_GUARD                */
     uint8_t outcode;  /* EW_OUT_*                                                          */
 } ew_screen_vertex;
 
@@ -80,29 +80,39 @@ typedef struct ew_clip_vertex {
     int64_t x, y, w; /* in one unit: src/geometry/clip.c                                   */
     ew_q20_12 u, v;
     int8_t corner;   /* of the triangle, 0 to 2; -1 for one without a place on the screen yet */
+    uint16_t colour[3]; /* uq8.8 red, green, blue                                          */
 } ew_clip_vertex;
 
 enum { EW_CLIP_MAX = 8 }; /* a triangle cut by five planes */
 
-/* The memory of the geometry layer: the caller's, about 700 bytes. */
+/* The memory of the geometry layer: the caller's, about 900 bytes. */
 typedef struct ew_geometry {
     ew_raster *raster;
     ew_transform transform;
+    ew_raster_vertex corner[3]; /* the triangle at hand                                    */
     ew_clip_vertex polygon[2][EW_CLIP_MAX];
 } ew_geometry;
 
 /* Points the layer at a raster context. */
 void ew_geometry_init(ew_geometry *geometry, ew_raster *raster);
 
-/* Draws triangles with the raster's material and geometry->transform. `screen` holds what
- * ew_transform_vertices made of `vertices` with that transform; `indices` has `index_count`
- * entries, a multiple of three, each below the number of vertices (the caller's promise;
- * ew_scene_open checks it for baked scenes). No triangle is left out: one that crosses the
- * near plane or leaves the guard band is clipped.
+/* Triangles of one material. Nothing is copied. */
+typedef struct ew_mesh {
+    const ew_vertex16 *vertices;
+    const ew_screen_vertex *screen; /* what ew_transform_vertices made of them              */
+    const ew_colour888 *colours;    /* one for each vertex; NULL: 255 everywhere            */
+    const uint16_t *indices;        /* `index_count` of them, each below the number of vertices */
+    uint32_t index_count;           /* a multiple of three                                  */
+    uint8_t uv_fraction_bits;       /* of the vertices' u and v, 0 to 12                     */
+} ew_mesh;
+
+/* Draws a mesh with the raster's material and geometry->transform, the one that mesh->screen
+ * was made with. That the indices are in range is the caller's promise; ew_scene_open checks
+ * it for baked scenes. No triangle is left out: one that crosses the near plane or leaves the
+ * guard band is clipped. A colour at a cut is off by half a unit and 1/50 at most, beside the
+ * place of the cut itself.
  * Returns the number of triangles that reached a pixel, or the first error of
  * ew_raster_triangle. */
-int32_t ew_draw_triangles(ew_geometry *geometry, const ew_vertex16 *vertices,
-                          const ew_screen_vertex *screen, const uint16_t *indices,
-                          uint32_t index_count, uint8_t uv_fraction_bits);
+int32_t ew_draw_triangles(ew_geometry *geometry, const ew_mesh *mesh);
 
 #endif

@@ -1,4 +1,4 @@
-/* What transform and clip share (private to the geometry layer). */
+/* What transform, clip and draw share (private to the geometry layer). */
 #ifndef EW_GEOMETRY_PROJECT_H
 #define EW_GEOMETRY_PROJECT_H
 
@@ -51,5 +51,12 @@ static inline int32_t ew_sum32_pieces(const ew_row_pieces *row, int32_t x, int32
  * no position; one outside the guard band gets EW_OUT_GUARD. */
 void ew_project(ew_screen_vertex *out, const ew_transform *transform, const ew_homogeneous_vertex *h,
                 int32_t e_x, int32_t e_y, int64_t near_w);
+
+/* What a corner of a mesh without colours has. */
+static const ew_colour888 ew_white = { 255, 255, 255 };
+
+/* Clips and draws the triangle of three vertices. Returns 1 or 0 as ew_raster_triangle, or its
+ * error. */
+int ew_draw_clipped(ew_geometry *geometry, const ew_mesh *mesh, const uint16_t index[3]);
 
 #endif

@@ -402,8 +402,9 @@ static int32_t draw_primitive(const ew_scene *scene, uint32_t number, const ew_p
     if (!error) error = ew_transform_set(&geometry->transform, projection, &model_view, viewport);
     if (error) return error;
     ew_transform_vertices(&geometry->transform, primitive.vertices, primitive.vertex_count, scratch);
-    return ew_draw_triangles(geometry, primitive.vertices, scratch, primitive.indices,
-                             primitive.index_count, primitive.uv_fraction_bits);
+    const ew_mesh mesh = { primitive.vertices, scratch, NULL, primitive.indices, primitive.index_count,
+                           primitive.uv_fraction_bits };
+    return ew_draw_triangles(geometry, &mesh);
 }
 
 int32_t ew_scene_draw(const ew_scene *scene, const ew_scene_camera *camera, const ew_mat34 *world,
