@@ -79,6 +79,21 @@ int64_t ew_scale64(int64_t a, uint64_t f)
     return -(int64_t)high - (exact ? 0 : 1); /* floor, and high < |a| <= 2^63 */
 }
 
+uint32_t ew_sqrt32(uint32_t n)
+{
+    /* Two bits of n give one of the root; `twice` is the root so far, doubled, in its place. */
+    uint32_t twice = 0;
+    for (uint32_t bit = UINT32_C(0x40000000); bit; bit >>= 2) {
+        if (n >= twice + bit) {
+            n -= twice + bit;
+            twice = (twice >> 1) + bit;
+        } else {
+            twice >>= 1;
+        }
+    }
+    return twice;
+}
+
 uint32_t ew_sqrt64(uint64_t n)
 {
     uint32_t root = 0;

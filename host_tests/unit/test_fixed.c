@@ -170,7 +170,12 @@ static void roots_are_floors(void **state)
     for (uint64_t n = 0; n < 70000; n++) {
         uint64_t r = ew_sqrt64(n);
         assert_true(r * r <= n && (r + 1) * (r + 1) > n);
+        assert_true(ew_sqrt32((uint32_t)n) == r);
     }
+    for (uint64_t r = 1; r < 65536; r++) { /* all roots, at both ends */
+        assert_true(ew_sqrt32((uint32_t)(r * r)) == r && ew_sqrt32((uint32_t)(r * r - 1)) == r - 1);
+    }
+    assert_true(ew_sqrt32(UINT32_MAX) == 65535);
     for (int i = 0; i < 200000; i++) {
         uint32_t r = test_random() >> (test_random() & 31);
         uint64_t square = (uint64_t)r * r;

@@ -166,6 +166,7 @@ uint64_t ew_fraction64(uint64_t n, uint64_t d);
 int64_t ew_scale64(int64_t a, uint64_t f);
 /* floor(sqrt(n)). */
 uint32_t ew_sqrt64(uint64_t n);
+uint32_t ew_sqrt32(uint32_t n);
 
 /* Approximate reciprocals of a normalised mantissa m, 2^31 <= m < 2^32: 2^62 / m, so in
  * (2^30, 2^31]. The first interpolates a table of 2^EW_RECIP_BITS entries linearly, the
