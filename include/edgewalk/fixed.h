@@ -82,8 +82,8 @@ static inline int ew_product_less_long(int32_t a, int32_t b, int32_t c, int32_t 
 static inline int ew_product_less_pieces(int32_t a, int32_t b, int32_t c, int32_t d)
 {
     const int32_t half = INT32_C(0x8000);
-    uint32_t beyond = (uint32_t)(a + half) | (uint32_t)(b + half) | (uint32_t)(c + half) | (uint32_t)(d + half);
-    if (beyond >> 16 == 0) return a * b < c * d; /* |.| <= 2^30 */
+    uint32_t all = (uint32_t)(a + half) | (uint32_t)(b + half) | (uint32_t)(c + half) | (uint32_t)(d + half);
+    if (all >> 16 == 0) return a * b < c * d; /* |.| <= 2^30 */
     return ew_product_less_long(a, b, c, d);
 }
 
@@ -261,6 +261,27 @@ int ew_mat44_mul(ew_mat44 *out, const ew_mat44 *a, const ew_mat44 *b);
  * EW_ERR_ARGUMENT. Errors as ew_mat34_mul. */
 int ew_mat34_from_trs(ew_mat34 *out, const int32_t t[3], int16_t t_exponent, const ew_quat *r,
                       const int32_t s[3], int16_t s_exponent);
+
+/* ---- quaternions ---- */
+
+/* The other way round; components of -2 do not change. */
+static inline ew_quat ew_quat_conjugate(const ew_quat *a)
+{
+    ew_quat r = { ew_wrap_sub32(0, a->x), ew_wrap_sub32(0, a->y), ew_wrap_sub32(0, a->z), a->w };
+    return r;
+}
+/* out = a b: b's rotation first. Nearest within 2^-25 of a unit, saturating. `out` may be a or b. */
+void ew_quat_mul(ew_quat *out, const ew_quat *a, const ew_quat *b);
+/* Unit length, each component within 2 units of 2^-30, for a of any length but 0: the null
+ * quaternion gives EW_ERR_ARGUMENT and is left. `out` may be a. */
+int ew_quat_normalise(ew_quat *out, const ew_quat *a);
+/* The rotation a part t 2^-31 of the way from a to b, 0 <= t <= 2^31, at constant angular speed
+ * along the shorter way: b and -b are the same rotation, and where both are equally far (half
+ * a turn) b is taken as it is. a and b may have any length but 0, see ew_quat_normalise; the
+ * ends are exactly what that makes of a, and of b or -b. In between, the rotation is within
+ * 2^-27 radians of the exact one and its length within 2^-28 of 1.
+ * Returns EW_OK, or EW_ERR_ARGUMENT for a null quaternion. `out` may be a or b. */
+int ew_quat_slerp(ew_quat *out, const ew_quat *a, const ew_quat *b, uint32_t t);
 
 /* A perspective with an infinite far plane, for a camera that looks down -z. */
 typedef struct ew_projection {
