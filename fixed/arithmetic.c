@@ -79,12 +79,25 @@ int64_t ew_scale64(int64_t a, uint64_t f)
     return -(int64_t)high - (exact ? 0 : 1); /* floor, and high < |a| <= 2^63 */
 }
 
+/* Two bits of n give one of the root; `twice` is the root so far, doubled, in its place. */
+uint32_t ew_sqrt32(uint32_t n)
+{
+    uint32_t twice = 0;
+    for (uint32_t bit = UINT32_C(1) << 30; bit; bit >>= 2) {
+        uint32_t with = twice + bit;
+        twice >>= 1;
+        if (n >= with) n -= with, twice += bit;
+    }
+    return twice;
+}
+
 uint32_t ew_sqrt64(uint64_t n)
 {
-    uint32_t root = 0;
-    for (uint32_t bit = 0x80000000u; bit; bit >>= 1) {
-        uint32_t with = root | bit;
-        if (ew_mul_u32(with, with) <= n) root = with;
+    uint64_t twice = 0;
+    for (uint64_t bit = UINT64_C(1) << 62; bit; bit >>= 2) {
+        uint64_t with = twice + bit;
+        twice >>= 1;
+        if (n >= with) n -= with, twice += bit;
     }
-    return root;
+    return (uint32_t)twice;
 }

@@ -18,10 +18,10 @@ $(BIN)/ew-accuracy: $(addprefix $(B)/host_tests/accuracy/,accuracy.o scene_measu
 # ---- unit tests ----
 T := $(B)/tests
 UNIT := $(B)/host_tests/unit
-UNIT_TESTS := $(addprefix $(T)/test_,fixed recip raster attributes geometry accuracy scene display display_faults stream readme)
+UNIT_TESTS := $(addprefix $(T)/test_,fixed recip quaternion light raster attributes geometry accuracy scene display display_faults stream readme)
 
 LINK_TEST = @mkdir -p $(@D); echo "LINK $@"; $(CC) $(HOST_CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka -lm
-$(addprefix $(T)/test_,fixed recip scene display display_faults): $(T)/test_%: $(UNIT)/test_%.o $(UNIT)/unit.o $(LIB)
+$(addprefix $(T)/test_,fixed recip quaternion light scene display display_faults): $(T)/test_%: $(UNIT)/test_%.o $(UNIT)/unit.o $(LIB)
 	$(LINK_TEST)
 $(T)/test_raster: $(UNIT)/test_raster.o $(UNIT)/unit.o $(B)/host_tests/reference/referee.o $(LIB)
 	$(LINK_TEST)
@@ -42,8 +42,9 @@ $(T)/test_readme: $(UNIT)/test_readme.o $(T)/readme_example.o $(UNIT)/unit.o $(B
 	$(LINK_TEST)
 
 # ---- configurations: each needs a core of its own ----
-# recip-N: the reciprocals with a table of 2^N entries; sub-N: coverage at N subpixel bits.
-CONFIG_TESTS := $(foreach n,4 5 6 7 9,$(T)/test_recip-$(n)) $(foreach n,4 6,$(T)/test_raster-$(n))
+# recip-N: the reciprocals with a table of 2^N entries; raster-N: coverage at N subpixel bits;
+# geometry-pieces: products as on a core without a long multiply.
+CONFIG_TESTS := $(foreach n,4 5 6 7 9,$(T)/test_recip-$(n)) $(foreach n,4 6,$(T)/test_raster-$(n)) $(T)/test_geometry-pieces
 $(T)/test_recip-%: host_tests/unit/test_recip.c host_tests/unit/unit.c fixed/recip.c fixed/recip_table.inc
 	@mkdir -p $(@D); echo "CC $@"
 	@$(CC) $(HOST_CFLAGS) -DEW_RECIP_BITS=$* -o $@ $(filter %.c,$^) -lcmocka -lm
@@ -51,6 +52,10 @@ $(T)/test_raster-%: host_tests/unit/test_raster.c host_tests/unit/unit.c host_te
   $(filter fixed/% src/raster/%,$(CORE_SRCS))
 	@mkdir -p $(@D); echo "CC $@"
 	@$(CC) $(HOST_CFLAGS) -DEW_SUBPIXEL_BITS=$* -o $@ $(filter %.c,$^) -lcmocka -lm
+$(T)/test_geometry-pieces: $(addprefix host_tests/,unit/test_geometry.c unit/unit.c reference/referee.c \
+  reference/scenes.c accuracy/measure.c) $(filter fixed/% src/raster/% src/geometry/%,$(CORE_SRCS))
+	@mkdir -p $(@D); echo "CC $@"
+	@$(CC) $(HOST_CFLAGS) -DEW_LONG_MULTIPLY=0 -DEW_TRACE=1 -o $@ $(filter %.c,$^) -lcmocka -lm
 
 # ---- goals ----
 accuracy: $(T)/test_accuracy  ## the referee's figures for the standard scenes, rung by rung

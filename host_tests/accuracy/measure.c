@@ -237,22 +237,22 @@ static void judge_triangle(const ew_raster *raster, const ref_triangle *truth)
     }
 }
 
-int measure_mesh(ew_geometry *geometry, const double mv[3][4], const ew_vertex16 *vertices,
-                 const ew_screen_vertex *screen, const uint16_t *indices, uint32_t index_count,
-                 uint8_t uv_fraction_bits)
+int measure_mesh(ew_geometry *geometry, const double mv[3][4], const ew_mesh *mesh)
 {
-    for (uint32_t i = 0; i < index_count; i += 3) {
+    for (uint32_t i = 0; i < mesh->index_count; i += 3) {
+        ew_mesh one = *mesh;
+        one.indices += i, one.index_count = 3;
         ref_corner corner[3];
         for (int k = 0; k < 3; k++) {
-            const ew_vertex16 *v = &vertices[indices[i + (uint32_t)k]];
+            const ew_vertex16 *v = &one.vertices[one.indices[k]];
             double p[3] = { v->x / 32768.0, v->y / 32768.0, v->z / 32768.0 }, view[3];
             for (int r = 0; r < 3; r++) view[r] = mv[r][0] * p[0] + mv[r][1] * p[1] + mv[r][2] * p[2] + mv[r][3];
-            corner[k] = (ref_corner){ view[0], view[1], -view[2], ldexp(v->u, -uv_fraction_bits),
-                                      ldexp(v->v, -uv_fraction_bits) };
+            corner[k] = (ref_corner){ view[0], view[1], -view[2], ldexp(v->u, -one.uv_fraction_bits),
+                                      ldexp(v->v, -one.uv_fraction_bits) };
         }
         now.triangles = 0;
         now.fragments = 0;
-        int32_t result = ew_draw_triangles(geometry, vertices, screen, indices + i, 3, uv_fraction_bits);
+        int32_t result = ew_draw_triangles(geometry, &one);
         if (result < 0) return (int)result;
         ref_triangle truth;
         if (!ref_triangle_init(&truth, &now.camera, corner)) {

@@ -36,9 +36,7 @@ void measure_begin(const ew_target *target, const ref_camera *camera, uint16_t b
 /* Draws one mesh, a triangle at a time, with geometry's raster and transform as they are
  * set. `model_view` takes a vertex (as q1.15) to view space in double. Returns 0, or the
  * first error of ew_draw_triangles. */
-int measure_mesh(ew_geometry *geometry, const double model_view[3][4], const ew_vertex16 *vertices,
-                 const ew_screen_vertex *screen, const uint16_t *indices, uint32_t index_count,
-                 uint8_t uv_fraction_bits);
+int measure_mesh(ew_geometry *geometry, const double model_view[3][4], const ew_mesh *mesh);
 
 /* Ends the picture. A pixel's colour is right when it is that of a fragment within one
  * depth unit of the nearest, at a texel that the exact u and v touch over the disc of the

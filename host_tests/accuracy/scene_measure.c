@@ -41,6 +41,31 @@ static double number(const uint8_t *p, int bytes)
     return bytes == 2 ? (int16_t)u : (int32_t)u;
 }
 
+/* The rotation a part f along the arc between two keys: both unit vectors of the plane that
+ * holds it, turned by a part of the angle. */
+static void rotation_between(double turn[4], const uint8_t *a, const uint8_t *b, double f)
+{
+    double from[4], side[4], size_a = 0, size_b = 0, along = 0, across = 0;
+    for (int i = 0; i < 4; i++) {
+        from[i] = number(a + 2 * i, 2);
+        side[i] = number(b + 2 * i, 2);
+        size_a += from[i] * from[i];
+        size_b += side[i] * side[i];
+    }
+    for (int i = 0; i < 4; i++) {
+        from[i] /= sqrt(size_a);
+        side[i] /= sqrt(size_b);
+        along += from[i] * side[i];
+    }
+    for (int i = 0; i < 4; i++) {
+        side[i] -= along * from[i];
+        across += side[i] * side[i];
+    }
+    across = sqrt(across);
+    double angle = f * atan2(across, along);
+    for (int i = 0; i < 4; i++) turn[i] = cos(angle) * from[i] + (across > 0 ? sin(angle) / across * side[i] : 0);
+}
+
 /* docs/scene-format.md, "movement". */
 static matrix track_matrix(const ew_scene *scene, int track, uint32_t time_ms)
 {
@@ -50,20 +75,21 @@ static matrix track_matrix(const ew_scene *scene, int track, uint32_t time_ms)
     double k = floor(at), f = at - k;
     const uint8_t *a = scene->section[EW_SECTION_KEYS].records + 32 * ((size_t)number(t, 4) + (size_t)k);
     const uint8_t *b = f > 0 ? a + 32 : a;
-    double v[10];
-    for (int i = 0; i < 10; i++) {
-        int bytes = i >= 3 && i < 7 ? 2 : 4, offset = i < 3 ? 4 * i : i < 7 ? 12 + 2 * (i - 3) : 20 + 4 * (i - 7);
-        v[i] = number(a + offset, bytes) * (1 - f) + number(b + offset, bytes) * f;
+    double v[6]; /* translation, scale */
+    for (int i = 0; i < 6; i++) {
+        int offset = i < 3 ? 4 * i : 20 + 4 * (i - 3);
+        v[i] = number(a + offset, 4) * (1 - f) + number(b + offset, 4) * f;
     }
-    double length = sqrt(v[3] * v[3] + v[4] * v[4] + v[5] * v[5] + v[6] * v[6]);
-    double x = v[3] / length, y = v[4] / length, z = v[5] / length, w = v[6] / length;
+    double turn[4];
+    rotation_between(turn, a + 12, b + 12, f);
+    double x = turn[0], y = turn[1], z = turn[2], w = turn[3];
     double r[3][3] = { { 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y) },
                        { 2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x) },
                        { 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y) } };
     matrix m;
     for (int i = 0; i < 3; i++) {
         m.m[i][3] = ldexp(v[i], (int)number(t + 8, 2) - 30);
-        for (int j = 0; j < 3; j++) m.m[i][j] = r[i][j] * ldexp(v[7 + j], (int)number(t + 10, 2) - 30);
+        for (int j = 0; j < 3; j++) m.m[i][j] = r[i][j] * ldexp(v[3 + j], (int)number(t + 10, 2) - 30);
     }
     return m;
 }
@@ -98,7 +124,8 @@ static int measure_primitive(const ew_scene *scene, uint32_t number_of, const ew
     if (error) return error;
     ew_transform_vertices(&geometry->transform, p.vertices, p.vertex_count, scratch);
     matrix box = exact(&p.dequantise), mv = times(node_view_exact, &box);
-    return measure_mesh(geometry, mv.m, p.vertices, scratch, p.indices, p.index_count, p.uv_fraction_bits);
+    const ew_mesh mesh = { p.vertices, scratch, NULL, p.indices, p.index_count, p.uv_fraction_bits };
+    return measure_mesh(geometry, mv.m, &mesh);
 }
 
 int measure_scene(const ew_scene *scene, const ew_scene_camera *camera, uint32_t time_ms, const ew_target *target,

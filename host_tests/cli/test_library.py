@@ -54,7 +54,7 @@ class Library(unittest.TestCase):
         """A file includes public headers of its own layer and those below it only."""
         below = {"fixed": {"config", "error", "fixed"}}
         below["src/raster"] = below["fixed"] | {"raster"}
-        below["src/geometry"] = below["src/raster"] | {"geometry"}
+        below["src/geometry"] = below["src/raster"] | {"geometry", "light"}
         below["src/scene"] = below["src/geometry"] | {"scene"}
         below["src/display"] = {"config", "error", "display"}
         for folder, allowed in below.items():

@@ -38,8 +38,8 @@ static measures draw(char name, ew_rung rung, uint16_t tolerance)
     assert_int_equal(ew_transform_set(&geometry.transform, &projection, &model_view, &viewport), EW_OK);
     ew_transform_vertices(&geometry.transform, scene.vertices, scene.vertex_count, screen);
     measure_begin(&target, &eye, BACKGROUND);
-    assert_int_equal(measure_mesh(&geometry, exact, scene.vertices, screen, scene.indices, scene.index_count,
-                                  scene.uv_fraction_bits), 0);
+    const ew_mesh mesh = { scene.vertices, screen, NULL, scene.indices, scene.index_count, scene.uv_fraction_bits };
+    assert_int_equal(measure_mesh(&geometry, exact, &mesh), 0);
     measures m;
     measure_end(&m, 0.125);
     return m;

@@ -48,6 +48,23 @@ static void high_words_of_pieces(void **state)
     }
 }
 
+static void products_are_compared(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 3000000; i++) {
+        int32_t v[4];
+        for (int k = 0; k < 4; k++) { /* within 2^31 - 2^15 */
+            v[k] = test_awkward() >> (i & 1 ? 1 : 16);
+            if (i % 7 == 0) v[k] = (int32_t)(test_random() & 1 ? 32768 : 32767) * (test_random() & 1 ? 1 : -1);
+        }
+        if (i % 3 == 0) v[2] = v[1], v[3] = v[0] + (int)(test_random() % 3) - 1; /* equal, or nearly */
+        int less = (__int128)v[0] * v[1] < (__int128)v[2] * v[3];
+        test_context("%d * %d < %d * %d", v[0], v[1], v[2], v[3]);
+        assert_int_equal(ew_product_less_long(v[0], v[1], v[2], v[3]), less);
+        assert_int_equal(ew_product_less_pieces(v[0], v[1], v[2], v[3]), less);
+    }
+}
+
 static void leading_zeros(void **state)
 {
     (void)state;
@@ -153,7 +170,12 @@ static void roots_are_floors(void **state)
     for (uint64_t n = 0; n < 70000; n++) {
         uint64_t r = ew_sqrt64(n);
         assert_true(r * r <= n && (r + 1) * (r + 1) > n);
+        assert_true(ew_sqrt32((uint32_t)n) == r);
     }
+    for (uint64_t r = 1; r < 65536; r++) { /* all roots, at both ends */
+        assert_true(ew_sqrt32((uint32_t)(r * r)) == r && ew_sqrt32((uint32_t)(r * r - 1)) == r - 1);
+    }
+    assert_true(ew_sqrt32(UINT32_MAX) == 65535);
     for (int i = 0; i < 200000; i++) {
         uint32_t r = test_random() >> (test_random() & 31);
         uint64_t square = (uint64_t)r * r;
@@ -390,6 +412,7 @@ int main(void)
         TEST(wrapping_is_modulo),
         TEST(products_are_exact),
         TEST(high_words_of_pieces),
+        TEST(products_are_compared),
         TEST(leading_zeros),
         TEST(conversions_round_as_stated),
         TEST(product_and_quotient_saturate),

@@ -2,9 +2,12 @@
 #include "unit.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "../accuracy/measure.h"
+#include "../reference/scenes.h"
+#include "../../src/geometry/project.h"
 
 enum { W = 96, H = 72, MESH = 24 };
 
@@ -84,7 +87,8 @@ static measures draw_random(const picture *p)
     }
     ew_transform_vertices(&geometry.transform, v, (uint32_t)(3 * p->triangles), screen);
     measure_begin(&target, &eye, 0);
-    assert_int_equal(measure_mesh(&geometry, exact, v, screen, index, (uint32_t)(3 * p->triangles), 8), 0);
+    const ew_mesh mesh = { v, screen, NULL, index, (uint32_t)(3 * p->triangles), 8 };
+    assert_int_equal(measure_mesh(&geometry, exact, &mesh), 0);
     measure_end(&m, 0.125);
     test_context("uv_off %g depth_off %g near %g size %g distance %g focal %g: %ld fragments, %ld wrong, %ld of the truth, vertex %.3f, depth %.3f, "
                  "u %.4f v %.4f", m.uv_off, m.depth_off, p->near_z, p->size, p->distance, p->focal, m.fragments, m.wrong_px, m.wrong_truth_px,
@@ -167,7 +171,8 @@ static void cut_edges_stay_shut(void **state)
             const ew_material material = { .colour = 1, .rung = EW_RUNG_CONSTANT, .flags = EW_DOUBLE_SIDED };
             ew_raster_set_material(&raster, &material);
             ew_raster_clear(&raster, 0);
-            assert_true(ew_draw_triangles(&geometry, v, screen, index + 3 * t, 3, 0) >= 0);
+            const ew_mesh mesh = { v, screen, NULL, index + 3 * t, 3, 0 };
+            assert_true(ew_draw_triangles(&geometry, &mesh) >= 0);
             for (int i = 0; i < W * H; i++) hits[i] = (uint8_t)(hits[i] + colour[i]);
         }
         /* in a row of the convex outline there is no gap, and nothing is hit twice */
@@ -223,7 +228,8 @@ static void a_corner_at_the_guard_band_keeps_its_place(void **state)
         memset(hits, 0, sizeof hits);
         for (int t = 0; t < 2; t++) {
             ew_raster_clear(&raster, 0);
-            assert_true(ew_draw_triangles(&geometry, v, screen, index + 3 * t, 3, 1) >= 0);
+            const ew_mesh mesh = { v, screen, NULL, index + 3 * t, 3, 1 };
+            assert_true(ew_draw_triangles(&geometry, &mesh) >= 0);
             for (int i = 0; i < SIZE * SIZE; i++) hits[i] = (uint8_t)(hits[i] + large[i]);
         }
         for (int x = 0; x < SIZE; x++) {
@@ -263,7 +269,8 @@ static void guard_band_drops_nothing(void **state)
         const ew_projection projection = { 65536, 87381, block(0.01) };
         assert_int_equal(ew_transform_set(&geometry.transform, &projection, &model_view, &viewport), EW_OK);
         ew_transform_vertices(&geometry.transform, v, 4, screen);
-        assert_true(ew_draw_triangles(&geometry, v, screen, index, 6, 0) > 0);
+        const ew_mesh mesh = { v, screen, NULL, index, 6, 0 };
+        assert_true(ew_draw_triangles(&geometry, &mesh) > 0);
         double horizon = H / 2 * (1 + 87381 / 65536.0 / (half * 32767 / 32768));
         for (int y = 0; y < H; y++) {
             for (int x = 0; x < W; x++) {
@@ -321,6 +328,109 @@ static void projected_positions(void **state)
     }
 }
 
+/* Sums from 16-bit pieces, for cores without a long multiply, are those of the others, also
+ * where the row's numbers fill their range. */
+static void sums_of_pieces(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2000000; k++) {
+        ew_row32 row = { { 0 }, 0 };
+        ew_row_pieces pieces;
+        int64_t left = 0x7FFC0000;
+        int first = (int)(test_random() & 3);
+        for (int i = 0; i < 4; i++) {
+            int at = (first + i) & 3;
+            int64_t a = (test_random() & 7) == 0 ? left : llabs((int64_t)test_awkward()) % (left + 1);
+            left -= a;
+            if (test_random() & 1) a = -a;
+            if (at < 3) row.m[at] = (int32_t)a;
+            else row.rest = a * ((int64_t)1 << 31);
+        }
+        int32_t v[3];
+        for (int i = 0; i < 3; i++) v[i] = test_random() & 3 ? (int16_t)test_random() : test_random() & 1 ? -32768 : 32767;
+        test_context("row %d %d %d %lld, vertex %d %d %d", row.m[0], row.m[1], row.m[2], (long long)row.rest, v[0], v[1], v[2]);
+        ew_row_pieces_init(&pieces, &row);
+        __int128 exact = row.rest;
+        for (int i = 0; i < 3; i++) exact += (__int128)row.m[i] * v[i] * 65536;
+        assert_int_equal(ew_sum32(&row, v[0] * 65536, v[1] * 65536, v[2] * 65536), (int32_t)(exact >> 32));
+        assert_int_equal(ew_sum32_pieces(&pieces, v[0], v[1], v[2]), (int32_t)(exact >> 32));
+    }
+}
+
+/* A vertex that took the quick way does not notice that near_w is out of reach. */
+static int went_quickly(const ew_transform *t, const ew_vertex16 *v)
+{
+    ew_transform never = *t;
+    ew_screen_vertex s;
+    never.near_w = INT64_MAX;
+    ew_transform_vertices(&never, v, 1, &s);
+    return !(s.outcode & EW_OUT_NEAR);
+}
+
+/* Both ways agree: what the quick one adds is below an eighth of 1/256 px. */
+static void both_ways_agree(void **state)
+{
+    (void)state;
+    long quick = 0, all = 0;
+    for (int k = 0; k < 4000; k++) {
+        ew_mat34 model_view;
+        double exact[3][4];
+        ew_viewport viewport = { (int16_t)(int)uniform(-200, 200), (int16_t)(int)uniform(-200, 200),
+                                 (uint16_t)pow(2, uniform(0, 12)), (uint16_t)pow(2, uniform(0, 12)) };
+        double size = pow(2, uniform(-8, 8)), distance = size * pow(2, uniform(-3, 5));
+        ew_block n = block(distance * pow(2, uniform(-16, 1)));
+        random_model_view(&model_view, exact, size, distance);
+        const ew_projection projection = { (int32_t)(65536 * uniform(0.3, 5)), (int32_t)(65536 * uniform(0.3, 5)), n };
+        ew_transform t, careful;
+        assert_int_equal(ew_transform_set(&t, &projection, &model_view, &viewport), EW_OK);
+        careful = t;
+        careful.w_hidden = INT32_MIN, careful.w_safe = INT32_MAX;
+        for (int i = 0; i < 50; i++) {
+            ew_vertex16 v = { (int16_t)test_random(), (int16_t)test_random(), (int16_t)test_random(), 0, 0 };
+            ew_screen_vertex a, b;
+            ew_transform_vertices(&t, &v, 1, &a);
+            ew_transform_vertices(&careful, &v, 1, &b);
+            all++;
+            test_context("case %d: x %d %d y %d %d w %u %u code %d %d", k, a.x, b.x, a.y, b.y, a.w, b.w, a.outcode, b.outcode);
+            if (!went_quickly(&t, &v)) { /* hidden or careful: the very same */
+                assert_true(a.x == b.x && a.y == b.y && a.w == b.w && a.outcode == b.outcode);
+                continue;
+            }
+            quick++;
+            assert_int_equal(b.outcode & (EW_OUT_NEAR | EW_OUT_GUARD), 0);
+            /* two units of 1/4096 px inside the viewport, in proportion outside, and both roundings */
+            double size_x = fmax(abs(viewport.x), abs(viewport.x + viewport.width)) * 4096;
+            double size_y = fmax(abs(viewport.y), abs(viewport.y + viewport.height)) * 4096;
+            assert_true(abs(a.x - b.x) <= 1 + 2 * fmax(1, abs(b.x) / size_x));
+            assert_true(abs(a.y - b.y) <= 1 + 2 * fmax(1, abs(b.y) / size_y));
+            assert_true(fabs((double)a.w - b.w) <= 2 + b.w * ldexp(1, -20));
+            if (a.x == b.x && a.y == b.y) assert_int_equal(a.outcode, b.outcode);
+        }
+    }
+    test_context("%ld of %ld quickly", quick, all);
+    assert_true(quick * 2 > all); /* the rest is hidden, or far beside a picture of a few pixels */
+    assert_true(quick * 10 < all * 9);
+}
+
+/* The counted scenes are drawn by the quick way, every vertex. */
+static void ordinary_scenes_take_the_quick_way(void **state)
+{
+    (void)state;
+    static standard_scene scene;
+    const ew_projection projection = { 65536, 65536, { 1 << 29, -1 } };
+    const ew_viewport viewport = { 0, -40, 320, 320 };
+    ew_mat34 model_view;
+    double exact[3][4];
+    ew_transform t;
+    standard_model_view(&model_view, exact);
+    standard_scene_init(&scene, 'B');
+    assert_int_equal(ew_transform_set(&t, &projection, &model_view, &viewport), EW_OK);
+    for (uint32_t i = 0; i < scene.vertex_count; i++) {
+        test_context("vertex %u", i);
+        assert_true(went_quickly(&t, &scene.vertices[i]));
+    }
+}
+
 static void arguments_are_checked(void **state)
 {
     (void)state;
@@ -347,6 +457,9 @@ int main(void)
 {
     for (int i = 0; i < 256; i++) texels[i] = (uint16_t)(0x1000 + 0x0101 * i);
     const struct CMUnitTest tests[] = {
+        TEST(sums_of_pieces),
+        TEST(both_ways_agree),
+        TEST(ordinary_scenes_take_the_quick_way),
         TEST(projected_positions),
         TEST(triangles_in_front),
         TEST(triangles_through_the_near_plane),

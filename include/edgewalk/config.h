@@ -7,6 +7,8 @@
 #ifndef EW_CONFIG_H
 #define EW_CONFIG_H
 
+#include <limits.h>
+
 /* Fraction bits of a snapped vertex position, 4 to 8. 8 is the default: it is what
  * the coverage promise of docs/conventions.md is stated for. */
 #ifndef EW_SUBPIXEL_BITS
@@ -23,6 +25,17 @@
 #endif
 #if EW_RECIP_BITS < 4 || EW_RECIP_BITS > 9
 #error "EW_RECIP_BITS: 4 to 9"
+#endif
+
+/* 1: the core has an instruction for 32 x 32 -> 64 bits. 0: where it matters, products are
+ * made of 16-bit pieces instead, with the same bits. By default 0 for the Cortex-M0, M0+, M1
+ * and M23 and where int has 16 bits, else 1. */
+#ifndef EW_LONG_MULTIPLY
+#if defined(__ARM_ARCH_6M__) || defined(__ARM_ARCH_8M_BASE__) || INT_MAX == 32767
+#define EW_LONG_MULTIPLY 0
+#else
+#define EW_LONG_MULTIPLY 1
+#endif
 #endif
 
 /* Check of what a caller promised (a NULL that must not be one, a size out of its

@@ -7,6 +7,7 @@
 #include "error.h"
 #include "fixed.h"
 #include "geometry.h"
+#include "light.h"
 #include "raster.h"
 #include "scene.h"
 

@@ -56,16 +56,36 @@ static inline uint32_t ew_mulh_u32_pieces(uint32_t a, uint32_t b)
 }
 static inline int32_t ew_mulh_s32_pieces(int32_t a, int32_t b)
 {
-    uint32_t high = ew_mulh_u32_pieces((uint32_t)a, (uint32_t)b);
-    return (int32_t)(high - (a < 0 ? (uint32_t)b : 0u) - (b < 0 ? (uint32_t)a : 0u));
+    /* the upper halves keep the sign: no correction is needed afterwards */
+    int32_t ah = EW_ASR(a, 16), al = a & 0xFFFF, bh = EW_ASR(b, 16), bl = b & 0xFFFF;
+    int32_t low = (int32_t)(((uint32_t)al * (uint32_t)bl) >> 16);
+    int32_t middle = ah * bl + low;                /* -2^15 (2^16 - 1) to 2^15 (2^16 - 1) */
+    int32_t other = al * bh + (middle & 0xFFFF);   /* likewise                            */
+    return ah * bh + EW_ASR(middle, 16) + EW_ASR(other, 16);
 }
-#if defined(__ARM_ARCH_6M__)
+#if !EW_LONG_MULTIPLY
 static inline int32_t ew_mulh_s32(int32_t a, int32_t b) { return ew_mulh_s32_pieces(a, b); }
 static inline uint32_t ew_mulh_u32(uint32_t a, uint32_t b) { return ew_mulh_u32_pieces(a, b); }
+#define ew_product_less ew_product_less_pieces
 #else
 static inline int32_t ew_mulh_s32(int32_t a, int32_t b) { return (int32_t)EW_ASR((int64_t)a * b, 32); }
 static inline uint32_t ew_mulh_u32(uint32_t a, uint32_t b) { return (uint32_t)(((uint64_t)a * b) >> 32); }
+#define ew_product_less ew_product_less_long
 #endif
+
+/* Whether a b < c d, for |a| ... |d| < 2^31 - 2^15. The second form tries 32 bits first, which
+ * most differences of corners fit. */
+static inline int ew_product_less_long(int32_t a, int32_t b, int32_t c, int32_t d)
+{
+    return ew_mul_s32(a, b) < ew_mul_s32(c, d);
+}
+static inline int ew_product_less_pieces(int32_t a, int32_t b, int32_t c, int32_t d)
+{
+    const int32_t half = INT32_C(0x8000);
+    uint32_t all = (uint32_t)(a + half) | (uint32_t)(b + half) | (uint32_t)(c + half) | (uint32_t)(d + half);
+    if (all >> 16 == 0) return a * b < c * d; /* |.| <= 2^30 */
+    return ew_product_less_long(a, b, c, d);
+}
 
 /* Magnitude; right for INT32_MIN and INT64_MIN too. */
 static inline uint32_t ew_abs32(int32_t a) { return a < 0 ? 0u - (uint32_t)a : (uint32_t)a; }
@@ -146,6 +166,7 @@ uint64_t ew_fraction64(uint64_t n, uint64_t d);
 int64_t ew_scale64(int64_t a, uint64_t f);
 /* floor(sqrt(n)). */
 uint32_t ew_sqrt64(uint64_t n);
+uint32_t ew_sqrt32(uint32_t n);
 
 /* Approximate reciprocals of a normalised mantissa m, 2^31 <= m < 2^32: 2^62 / m, so in
  * (2^30, 2^31]. The first interpolates a table of 2^EW_RECIP_BITS entries linearly, the
@@ -156,6 +177,29 @@ uint32_t ew_sqrt64(uint64_t n);
  * How the table's entries are chosen: fixed/recip_table.py. */
 uint32_t ew_recip_table(uint32_t m);
 uint32_t ew_recip_newton(uint32_t m);
+
+/* The same two without a call, for loops, and their table. */
+extern const uint16_t ew_recip_entries[(1 << EW_RECIP_BITS) + 1];
+static inline uint32_t ew_recip_table_inline(uint32_t m)
+{
+    /* m = 2^31 (1 + i/2^b + f/2^(b+16) + ...): the bits below f are worth less than the
+     * table's own rounding. */
+    uint32_t i = (m >> (31 - EW_RECIP_BITS)) & ((UINT32_C(1) << EW_RECIP_BITS) - 1u);
+    uint32_t f = (m >> (15 - EW_RECIP_BITS)) & 0xFFFFu;
+    uint32_t a = ew_recip_entries[i];
+    /* Falls from entry to entry by at most 2^17 / 17 (b = 4), so the product is below 2^29. */
+    uint32_t fall = (a - ew_recip_entries[i + 1]) * f;
+    /* Table units are 2^14 of the result; (2^16 + a) 2^14 < 2^31. */
+    return ((UINT32_C(65536) + a) << 14) - (fall >> 2);
+}
+static inline uint32_t ew_recip_newton_inline(uint32_t m)
+{
+    uint32_t r = ew_recip_table_inline(m);
+    /* m r = 2^62 (1 + d) with |d| < 2^-11, so t = 2^30 (1 + d), and the better reciprocal
+     * is r (1 - d) = r (2^31 - t) / 2^30, off by d^2. Twice each factor fits 32 bits. */
+    uint32_t t = ew_mulh_u32(m, r);
+    return ew_mulh_u32(r << 1, 0u - (t << 1));
+}
 
 /* ---- vectors ---- */
 
@@ -217,6 +261,27 @@ int ew_mat44_mul(ew_mat44 *out, const ew_mat44 *a, const ew_mat44 *b);
  * EW_ERR_ARGUMENT. Errors as ew_mat34_mul. */
 int ew_mat34_from_trs(ew_mat34 *out, const int32_t t[3], int16_t t_exponent, const ew_quat *r,
                       const int32_t s[3], int16_t s_exponent);
+
+/* ---- quaternions ---- */
+
+/* The other way round; components of -2 do not change. */
+static inline ew_quat ew_quat_conjugate(const ew_quat *a)
+{
+    ew_quat r = { ew_wrap_sub32(0, a->x), ew_wrap_sub32(0, a->y), ew_wrap_sub32(0, a->z), a->w };
+    return r;
+}
+/* out = a b: b's rotation first. Nearest within 2^-25 of a unit, saturating. `out` may be a or b. */
+void ew_quat_mul(ew_quat *out, const ew_quat *a, const ew_quat *b);
+/* Unit length, each component within 2 units of 2^-30, for a of any length but 0: the null
+ * quaternion gives EW_ERR_ARGUMENT and is left. `out` may be a. */
+int ew_quat_normalise(ew_quat *out, const ew_quat *a);
+/* The rotation a part t 2^-31 of the way from a to b, 0 <= t <= 2^31, at constant angular speed
+ * along the shorter way: b and -b are the same rotation, and where both are equally far (half
+ * a turn) b is taken as it is. a and b may have any length but 0, see ew_quat_normalise; the
+ * ends are exactly what that makes of a, and of b or -b. In between, the rotation is within
+ * 2^-27 radians of the exact one and its length within 2^-28 of 1.
+ * Returns EW_OK, or EW_ERR_ARGUMENT for a null quaternion. `out` may be a or b. */
+int ew_quat_slerp(ew_quat *out, const ew_quat *a, const ew_quat *b, uint32_t t);
 
 /* A perspective with an infinite far plane, for a camera that looks down -z. */
 typedef struct ew_projection {

@@ -20,8 +20,8 @@ typedef struct ew_vertex16 {
 
 /* A corner after the transform: 16 bytes. */
 typedef struct ew_screen_vertex {
-    ew_q20_12 x, y;   /* px; only with neither EW_OUT_NEAR nor EW_OUT_GUARD                */
     ew_uq1_31 w;      /* near/z                                                            */
+    ew_q20_12 x, y;   /* px; only with neither EW_OUT_NEAR nor EW_OUT_GUARD                */
     uint8_t outcode;  /* EW_OUT_*                                                          */
 } ew_screen_vertex;
 
@@ -37,11 +37,24 @@ typedef struct ew_viewport {
     uint16_t width, height; /* px, 1 to 8192                                               */
 } ew_viewport;
 
+/* A row whose sums with q1.15 vertices fit 31 bits; the units are ew_transform's own. */
+typedef struct ew_row32 {
+    int32_t m[3];
+    int64_t rest;       /* 2^31 times (translation + 1 for rounding)                       */
+} ew_row32;
+
 /* Model space to the screen, homogeneous: px = x/w, py = y/w, depth = near/w. */
 typedef struct ew_transform {
     ew_row x, y, w;     /* here e_last = e                                                  */
     int64_t near_w;     /* the near distance in units of 2^(w.e - 45), those of row w's sums */
-    ew_viewport viewport;
+    ew_q20_12 left, top;      /* the viewport                                               */
+    uint32_t across, down;    /* in the same units                                          */
+    /* The same for the vertices that 32 bits suffice for: src/geometry/transform.c. */
+    ew_row32 x32, y32, w32;
+    int32_t w_safe;     /* sums of w32 from here on are beyond the near plane, and exact enough */
+    int32_t w_hidden;   /* sums below this are nearer than it                               */
+    uint32_t near_m;    /* near distance = near_m 2^-(near_shift + 3) in units of those sums */
+    int8_t near_shift, shift_x, shift_y;
 } ew_transform;
 
 /* Makes the transform for one model; `model_view` takes vertices as q1.15 to view space.
@@ -55,6 +68,9 @@ int ew_transform_set(ew_transform *transform, const ew_projection *projection,
  * they are off by at most 2^-28 of position + viewport, times (size + distance of the
  * model) / z of the vertex. So a vertex snaps within 0.75 subpixel of its
  * exact projection unless it is nearer than about 1/1000 of the model's size.
+ * Most vertices take the quick way, in 32 bits; those farther from the target's corner than
+ * about twice the viewport's size, nearer than twice the near distance or than about 1/200 of
+ * the model's size take four times as long.
  * `out` must not overlap `in`. */
 void ew_transform_vertices(const ew_transform *transform, const ew_vertex16 *in, uint32_t count,
                            ew_screen_vertex *out);
@@ -64,29 +80,39 @@ typedef struct ew_clip_vertex {
     int64_t x, y, w; /* in one unit: src/geometry/clip.c                                   */
     ew_q20_12 u, v;
     int8_t corner;   /* of the triangle, 0 to 2; -1 for one without a place on the screen yet */
+    uint16_t colour[3]; /* uq8.8 red, green, blue                                          */
 } ew_clip_vertex;
 
 enum { EW_CLIP_MAX = 8 }; /* a triangle cut by five planes */
 
-/* The memory of the geometry layer: the caller's, about 700 bytes. */
+/* The memory of the geometry layer: the caller's, about 900 bytes. */
 typedef struct ew_geometry {
     ew_raster *raster;
     ew_transform transform;
+    ew_raster_vertex corner[3]; /* the triangle at hand                                    */
     ew_clip_vertex polygon[2][EW_CLIP_MAX];
 } ew_geometry;
 
 /* Points the layer at a raster context. */
 void ew_geometry_init(ew_geometry *geometry, ew_raster *raster);
 
-/* Draws triangles with the raster's material and geometry->transform. `screen` holds what
- * ew_transform_vertices made of `vertices` with that transform; `indices` has `index_count`
- * entries, a multiple of three, each below the number of vertices (the caller's promise;
- * ew_scene_open checks it for baked scenes). No triangle is left out: one that crosses the
- * near plane or leaves the guard band is clipped.
+/* Triangles of one material. Nothing is copied. */
+typedef struct ew_mesh {
+    const ew_vertex16 *vertices;
+    const ew_screen_vertex *screen; /* what ew_transform_vertices made of them              */
+    const ew_colour888 *colours;    /* one for each vertex; NULL: 255 everywhere            */
+    const uint16_t *indices;        /* `index_count` of them, each below the number of vertices */
+    uint32_t index_count;           /* a multiple of three                                  */
+    uint8_t uv_fraction_bits;       /* of the vertices' u and v, 0 to 12                     */
+} ew_mesh;
+
+/* Draws a mesh with the raster's material and geometry->transform, the one that mesh->screen
+ * was made with. That the indices are in range is the caller's promise; ew_scene_open checks
+ * it for baked scenes. No triangle is left out: one that crosses the near plane or leaves the
+ * guard band is clipped. A colour at a cut is off by half a unit and 1/50 at most, beside the
+ * place of the cut itself.
  * Returns the number of triangles that reached a pixel, or the first error of
  * ew_raster_triangle. */
-int32_t ew_draw_triangles(ew_geometry *geometry, const ew_vertex16 *vertices,
-                          const ew_screen_vertex *screen, const uint16_t *indices,
-                          uint32_t index_count, uint8_t uv_fraction_bits);
+int32_t ew_draw_triangles(ew_geometry *geometry, const ew_mesh *mesh);
 
 #endif

@@ -1,7 +1,6 @@
-/* Triangles from indices; clipping of those that cross the near plane or leave the guard
- * band.
+/* Clipping of triangles that cross the near plane or leave the guard band.
  *
- * Clipping is done before the division, on the sums of the transform's rows, brought to
+ * It is done before the division, on the sums of the transform's rows, brought to
  * one unit. It is rare, so it is exact rather than fast: distances are 64-bit integers
  * and the cut's fraction has 64 bits. A cut is always computed from the inner to the outer
  * corner, so that two triangles that share an edge get the same new corner, and a corner
@@ -67,6 +66,10 @@ static void cut(ew_clip_vertex *out, const ew_clip_vertex *inner, int64_t d_inne
     out->w = inner->w + ew_scale64(outer->w - inner->w, f);
     out->u = inner->u + (ew_q20_12)ew_scale64((int64_t)outer->u - inner->u, f);
     out->v = inner->v + (ew_q20_12)ew_scale64((int64_t)outer->v - inner->v, f);
+    for (int i = 0; i < 3; i++) { /* a mean of both, to the nearest 2^-8: |product| < 2^48 */
+        int64_t change = ((int64_t)outer->colour[i] - inner->colour[i]) * (int64_t)(f >> 32);
+        out->colour[i] = (uint16_t)(inner->colour[i] + EW_ASR(change + ((int64_t)1 << 31), 32));
+    }
     out->corner = -1;
 }
 
@@ -97,15 +100,6 @@ static int leaves_guard(const ew_clip_vertex *polygon, int count)
     return 0;
 }
 
-static void corner_from(ew_raster_vertex *out, const ew_screen_vertex *screen, ew_q20_12 u, ew_q20_12 v)
-{
-    out->x = screen->x;
-    out->y = screen->y;
-    out->w = screen->w;
-    out->u = u;
-    out->v = v;
-}
-
 /* Where x and w differ so much in size that one unit leaves few bits of w, a corner cut at
  * the guard band may come out beyond it. */
 static ew_q20_12 within_guard(ew_q20_12 a)
@@ -114,23 +108,57 @@ static ew_q20_12 within_guard(ew_q20_12 a)
     return a > guard ? guard : a < -guard ? -guard : a;
 }
 
-/* Clips and draws one triangle. Returns 1 or 0 as ew_raster_triangle, or its error. */
-static int draw_clipped(ew_geometry *g, const ew_vertex16 *const corner[3],
-                        const ew_screen_vertex *const screen[3], int uv_shift)
+/* The homogeneous corners of a triangle, in the clipper's unit. */
+static void polygon_from(ew_clip_vertex polygon[3], const clip_unit *unit, const ew_transform *t,
+                         const ew_mesh *mesh, const uint16_t index[3])
 {
-    const ew_transform *t = &g->transform;
-    clip_unit unit = choose_unit(t);
-    ew_clip_vertex *polygon = g->polygon[0], *other = g->polygon[1];
+    const int32_t uv_unit = (int32_t)1 << (12 - mesh->uv_fraction_bits);
     for (int i = 0; i < 3; i++) {
+        const ew_vertex16 *v = &mesh->vertices[index[i]];
         ew_homogeneous_vertex h;
-        ew_homogeneous(&h, t, corner[i]);
-        polygon[i].x = shifted(h.x, unit.down_x);
-        polygon[i].y = shifted(h.y, unit.down_y);
-        polygon[i].w = shifted(h.w, unit.down_w);
-        polygon[i].u = corner[i]->u * ((int32_t)1 << uv_shift);
-        polygon[i].v = corner[i]->v * ((int32_t)1 << uv_shift);
-        polygon[i].corner = screen[i]->outcode & (EW_OUT_NEAR | EW_OUT_GUARD) ? -1 : (int8_t)i;
+        ew_homogeneous(&h, t, v);
+        polygon[i].x = shifted(h.x, unit->down_x);
+        polygon[i].y = shifted(h.y, unit->down_y);
+        polygon[i].w = shifted(h.w, unit->down_w);
+        polygon[i].u = v->u * uv_unit;
+        polygon[i].v = v->v * uv_unit;
+        polygon[i].corner = mesh->screen[index[i]].outcode & (EW_OUT_NEAR | EW_OUT_GUARD) ? -1 : (int8_t)i;
+        const ew_colour888 *c = mesh->colours ? &mesh->colours[index[i]] : &ew_white;
+        polygon[i].colour[0] = (uint16_t)(c->r * 256u);
+        polygon[i].colour[1] = (uint16_t)(c->g * 256u);
+        polygon[i].colour[2] = (uint16_t)(c->b * 256u);
     }
+}
+
+/* A corner of the clipped polygon, for the raster. `index` are its triangle's vertices. */
+static void corner_from(ew_raster_vertex *out, const ew_clip_vertex *p, const ew_transform *t, int64_t near_w,
+                        const ew_mesh *mesh, const uint16_t index[3])
+{
+    ew_screen_vertex made;
+    if (p->corner >= 0) {
+        made = mesh->screen[index[p->corner]];
+    } else {
+        ew_homogeneous_vertex h;
+        h.x = p->x, h.y = p->y, h.w = p->w;
+        ew_project(&made, t, &h, 0, 0, near_w);
+        made.x = within_guard(made.x);
+        made.y = within_guard(made.y);
+    }
+    out->x = made.x;
+    out->y = made.y;
+    out->w = made.w;
+    out->u = p->u;
+    out->v = p->v;
+    out->colour.r = (uint8_t)((p->colour[0] + 128u) >> 8); /* <= 255 256 + 128 */
+    out->colour.g = (uint8_t)((p->colour[1] + 128u) >> 8);
+    out->colour.b = (uint8_t)((p->colour[2] + 128u) >> 8);
+}
+
+int ew_draw_clipped(ew_geometry *g, const ew_mesh *mesh, const uint16_t index[3])
+{
+    clip_unit unit = choose_unit(&g->transform);
+    ew_clip_vertex *polygon = g->polygon[0], *other = g->polygon[1];
+    polygon_from(polygon, &unit, &g->transform, mesh, index);
     int count = 3;
     for (int plane = PLANE_NEAR; plane < PLANE_COUNT; plane++) {
         if (plane == PLANE_LEFT && !leaves_guard(polygon, count)) break;
@@ -141,75 +169,15 @@ static int draw_clipped(ew_geometry *g, const ew_vertex16 *const corner[3],
         other = swap;
     }
 
-    ew_raster_vertex fan[3];
+    ew_raster_vertex *const fan = g->corner;
     int drawn = 0;
     for (int i = 0; i < count; i++) {
-        const ew_clip_vertex *p = &polygon[i];
-        ew_screen_vertex made;
-        if (p->corner >= 0) {
-            made = *screen[p->corner];
-        } else {
-            ew_homogeneous_vertex h;
-            h.x = p->x, h.y = p->y, h.w = p->w;
-            ew_project(&made, t, &h, 0, 0, unit.near_w);
-            made.x = within_guard(made.x);
-            made.y = within_guard(made.y);
-        }
-        corner_from(&fan[i < 2 ? i : 2], &made, p->u, p->v);
+        corner_from(&fan[i < 2 ? i : 2], &polygon[i], &g->transform, unit.near_w, mesh, index);
         if (i < 2) continue;
         int result = ew_raster_triangle_in_range(g->raster, &fan[0], &fan[1], &fan[2]);
         if (result < 0) return result;
         drawn |= result;
         fan[1] = fan[2];
-    }
-    return drawn;
-}
-
-/* Whether the triangle of the snapped corners is a front: its area negative. Most of a
- * closed model is decided here, before anything is set up. */
-static int faces_the_eye(const ew_screen_vertex *const v[3])
-{
-    int32_t x0 = ew_snapped_from_q20_12(v[0]->x), y0 = ew_snapped_from_q20_12(v[0]->y);
-    int32_t dx1 = ew_snapped_from_q20_12(v[1]->x) - x0, dy1 = ew_snapped_from_q20_12(v[1]->y) - y0;
-    int32_t dx2 = ew_snapped_from_q20_12(v[2]->x) - x0, dy2 = ew_snapped_from_q20_12(v[2]->y) - y0;
-    return ew_mul_s32(dx1, dy2) < ew_mul_s32(dx2, dy1); /* |d| <= 2^26 */
-}
-
-void ew_geometry_init(ew_geometry *geometry, ew_raster *raster) { geometry->raster = raster; }
-
-int32_t ew_draw_triangles(ew_geometry *geometry, const ew_vertex16 *vertices,
-                          const ew_screen_vertex *screen, const uint16_t *indices,
-                          uint32_t index_count, uint8_t uv_fraction_bits)
-{
-    int uv_shift = 12 - uv_fraction_bits; /* |u| 2^12 < 2^28 */
-    const int one_sided = !(geometry->raster->material.flags & EW_DOUBLE_SIDED);
-    int32_t drawn = 0;
-    for (uint32_t i = 0; i + 2 < index_count; i += 3) {
-        const ew_vertex16 *corner[3];
-        const ew_screen_vertex *on_screen[3];
-        uint8_t all = 0xFF, any = 0;
-        for (int k = 0; k < 3; k++) {
-            corner[k] = &vertices[indices[i + (uint32_t)k]];
-            on_screen[k] = &screen[indices[i + (uint32_t)k]];
-            all &= on_screen[k]->outcode;
-            any |= on_screen[k]->outcode;
-        }
-        if (all & ~EW_OUT_GUARD) continue; /* wholly beside the viewport or behind the near plane */
-
-        int result;
-        if (any & (EW_OUT_NEAR | EW_OUT_GUARD)) {
-            result = draw_clipped(geometry, corner, on_screen, uv_shift);
-        } else {
-            if (one_sided && !faces_the_eye(on_screen)) continue;
-            ew_raster_vertex v[3];
-            for (int k = 0; k < 3; k++) {
-                corner_from(&v[k], on_screen[k], corner[k]->u * ((int32_t)1 << uv_shift),
-                            corner[k]->v * ((int32_t)1 << uv_shift));
-            }
-            result = ew_raster_triangle_in_range(geometry->raster, &v[0], &v[1], &v[2]);
-        }
-        if (result < 0) return result;
-        drawn += result;
     }
     return drawn;
 }

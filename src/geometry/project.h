@@ -1,4 +1,4 @@
-/* What transform and clip share (private to the geometry layer). */
+/* What transform, clip and draw share (private to the geometry layer). */
 #ifndef EW_GEOMETRY_PROJECT_H
 #define EW_GEOMETRY_PROJECT_H
 
@@ -11,10 +11,52 @@ typedef struct ew_homogeneous_vertex {
 
 void ew_homogeneous(ew_homogeneous_vertex *out, const ew_transform *transform, const ew_vertex16 *v);
 
+/* floor((T + 1) / 2) with T = (sum of m times the vertex) 2^-15 + translation. The vertex comes
+ * as q1.31. |m| and |translation + 1| add up to less than 2^31, so |T| is below it too. */
+static inline int32_t ew_sum32(const ew_row32 *row, int32_t x, int32_t y, int32_t z)
+{
+    int64_t sum = row->rest;
+    sum += ew_mul_s32(row->m[0], x);
+    sum += ew_mul_s32(row->m[1], y);
+    sum += ew_mul_s32(row->m[2], z);
+    return (int32_t)EW_ASR(sum, 32);
+}
+
+/* The same bits for cores without a long multiply, with the vertex as q1.15: m = high 2^15 + low,
+ * |low| <= 2^14. */
+typedef struct ew_row_pieces {
+    int32_t high[3], low[3], rest;
+} ew_row_pieces;
+
+static inline void ew_row_pieces_init(ew_row_pieces *out, const ew_row32 *row)
+{
+    for (int i = 0; i < 3; i++) {
+        out->high[i] = EW_ASR(row->m[i] + 0x4000, 15); /* |m| < 2^31 - 2^15 */
+        out->low[i] = row->m[i] - out->high[i] * 32768;
+    }
+    out->rest = (int32_t)EW_ASR(row->rest, 31);
+}
+
+static inline int32_t ew_sum32_pieces(const ew_row_pieces *row, int32_t x, int32_t y, int32_t z)
+{
+    int32_t low = row->low[0] * x + row->low[1] * y + row->low[2] * z; /* |.| <= 3 2^29 */
+    /* sums on the way may wrap, the whole does not */
+    uint32_t sum = (uint32_t)row->rest + (uint32_t)EW_ASR(low, 15) + (uint32_t)(row->high[0] * x) +
+                   (uint32_t)(row->high[1] * y) + (uint32_t)(row->high[2] * z);
+    return EW_ASR((int32_t)sum, 1);
+}
+
 /* Divides by w. x is in units 2^e_x times those of w, y in 2^e_y times; near_w in those of
  * w, 2^16 <= near_w. |x|, |y|, |w| < 2^63. A vertex nearer than near_w gets EW_OUT_NEAR and
  * no position; one outside the guard band gets EW_OUT_GUARD. */
 void ew_project(ew_screen_vertex *out, const ew_transform *transform, const ew_homogeneous_vertex *h,
                 int32_t e_x, int32_t e_y, int64_t near_w);
+
+/* What a corner of a mesh without colours has. */
+static const ew_colour888 ew_white = { 255, 255, 255 };
+
+/* Clips and draws the triangle of three vertices. Returns 1 or 0 as ew_raster_triangle, or its
+ * error. */
+int ew_draw_clipped(ew_geometry *geometry, const ew_mesh *mesh, const uint16_t index[3]);
 
 #endif

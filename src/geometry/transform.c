@@ -1,4 +1,12 @@
-/* Vertices to the screen. */
+/* Vertices to the screen, by two ways.
+ *
+ * Most vertices take the quick one: sums of 31 bits, one reciprocal of 1/w, and shifts that
+ * are the same for all vertices of a transform. The rows x and y are scaled so that every
+ * position up to 2^(16 - shift) px, at least twice as far as the viewport's borders, fits.
+ * What is farther away, or nearer than twice the near distance, or so near that 31 bits would
+ * be felt, takes the way in 64 bits. Which way a vertex takes depends on numbers alone, so
+ * every target gets the same bits.
+ */
 #include "project.h"
 
 /* For sums with q1.15 vertices: the smaller of the two parts loses bits that the sum could
@@ -17,6 +25,86 @@ static void bring_to_one_exponent(ew_row *row)
         row->m[3] = EW_ASR(EW_ASR(row->m[3], -down - 1) + 1, 1);
     }
     row->e_last = row->e;
+}
+
+/* ---- rows for 32 bits ---- */
+
+/* |m| and |rest| of a row add up to less than this: ew_row_pieces_init needs the room. */
+static const int32_t ROW32_LIMIT = INT32_C(0x7FFC0000);
+
+/* The fewest bits, -1 or more, that a row has to be shifted down by. */
+static int32_t row32_down(const ew_row *row)
+{
+    uint64_t twice = 0; /* <= 2^33 */
+    for (int j = 0; j < 4; j++) twice += 2u * (uint64_t)ew_abs32(row->m[j]);
+    int32_t down = -1;
+    for (; twice >= (uint32_t)ROW32_LIMIT - 8u; twice >>= 1) down++; /* 8: what rounding adds */
+    return down;
+}
+
+static int32_t rounded_down(int32_t m, int32_t down)
+{
+    if (down <= 0) return m * ((int32_t)1 << -down);
+    return down > 31 ? 0 : EW_ASR(EW_ASR(m, down - 1) + 1, 1);
+}
+
+static void row32_init(ew_row32 *out, const ew_row *row, int32_t down)
+{
+    for (int j = 0; j < 3; j++) out->m[j] = rounded_down(row->m[j], down);
+    out->rest = ((int64_t)rounded_down(row->m[3], down) + 1) * ((int64_t)1 << 31);
+}
+
+/* Row x or y. A sum's unit is 2^exponent times that of w32's: then a position below
+ * 2^(exponent + 1) px in magnitude fits. Returns EW_OK, or EW_ERR_RANGE when the row is so
+ * much larger than w's that positions would leave the guard band. */
+static int position_row(ew_row32 *out, int8_t *shift, const ew_row *row, int32_t w_unit,
+                        int32_t least_exponent)
+{
+    int32_t down = row32_down(row), exponent = row->e + down - w_unit;
+    if (exponent < least_exponent) {
+        down += least_exponent - exponent;
+        exponent = least_exponent;
+    }
+    row32_init(out, row, down);
+    *shift = (int8_t)(15 - exponent);
+    return exponent <= 15 ? EW_OK : EW_ERR_RANGE;
+}
+
+/* How many bits a distance up to the viewport's farther border takes, 0 to 14. */
+static int32_t bits_of_borders(int32_t from, uint32_t size)
+{
+    uint32_t farthest = ew_abs32(from), other = ew_abs32(from + (int32_t)size);
+    if (other > farthest) farthest = other;
+    return 32 - ew_clz32(farthest - 1u); /* not 0: size is not */
+}
+
+static void choose_rows32(ew_transform *t, const ew_viewport *viewport)
+{
+    int32_t down = row32_down(&t->w);
+    int32_t w_unit = t->w.e + down; /* sums of w32 are in units of 2^(w_unit - 29) */
+    row32_init(&t->w32, &t->w, down);
+    int32_t least_x = bits_of_borders(viewport->x, viewport->width);
+    int32_t least_y = bits_of_borders(viewport->y, viewport->height);
+    int error = position_row(&t->x32, &t->shift_x, &t->x, w_unit, least_x);
+    if (!error) error = position_row(&t->y32, &t->shift_y, &t->y, w_unit, least_y);
+    /* near_w = near_m 2^(32 - zeros) in units of 2^(w.e - 45) */
+    int zeros = ew_clz64((uint64_t)t->near_w);
+    int32_t near_zeros = zeros - 16 + down;
+    t->near_m = (uint32_t)(((uint64_t)t->near_w << zeros) >> 32);
+    if (error || near_zeros < 3 || near_zeros > 27) { /* 31 bits never suffice */
+        t->w_hidden = INT32_MIN;
+        t->w_safe = INT32_MAX;
+        t->near_shift = 0;
+        return;
+    }
+    /* Sums are off by at most 1.5 units. Those of x and of w together move a position inside the
+     * viewport by at most 3 2^exponent / w px: kept below an eighth of 2^-8 px. */
+    int32_t least_shift = t->shift_x < t->shift_y ? t->shift_x : t->shift_y;
+    int32_t precise = (int32_t)3 << (15 - least_shift + 11);
+    t->near_shift = (int8_t)(near_zeros - 3);
+    t->w_hidden = (int32_t)(t->near_m >> near_zeros) - 3;
+    t->w_safe = ((int32_t)1 << (32 - near_zeros)) + 3;
+    if (t->w_safe < precise) t->w_safe = precise;
 }
 
 int ew_transform_set(ew_transform *transform, const ew_projection *projection, const ew_mat34 *model_view,
@@ -57,9 +145,15 @@ int ew_transform_set(ew_transform *transform, const ew_projection *projection, c
     transform->y = all.row[1];
     transform->w = all.row[3];
     transform->near_w = near_w;
-    transform->viewport = *viewport;
+    transform->left = (int32_t)viewport->x * 4096;
+    transform->top = (int32_t)viewport->y * 4096;
+    transform->across = (uint32_t)viewport->width * 4096u;
+    transform->down = (uint32_t)viewport->height * 4096u;
+    choose_rows32(transform, viewport);
     return EW_OK;
 }
+
+/* ---- in 64 bits ---- */
 
 /* |sum| <= 4 2^30 2^15 = 2^47, in units of 2^(e - 45). */
 static int64_t row_times(const ew_row *row, const ew_vertex16 *v)
@@ -98,13 +192,30 @@ static int32_t quotient(int64_t a, uint32_t r, int w_zeros, int32_t e)
     return (int32_t)EW_ASR(product + ((int64_t)1 << (shift - 1)), shift);
 }
 
-void ew_project(ew_screen_vertex *out, const ew_transform *t, const ew_homogeneous_vertex *h, int32_t e_x,
-                int32_t e_y, int64_t near_w)
+static void hide(ew_screen_vertex *out)
 {
     out->x = out->y = 0;
     out->w = 0;
+    out->outcode = EW_OUT_NEAR;
+}
+
+/* |x|, |y| <= 2^30; the viewport's borders are below 2^26. An unsigned comparison sees both
+ * sides at once. */
+static inline uint8_t outcode_of(const ew_transform *t, int32_t x, int32_t y)
+{
+    unsigned code = 0;
+    x -= t->left;
+    y -= t->top;
+    if ((uint32_t)x > t->across) code = x < 0 ? EW_OUT_LEFT : EW_OUT_RIGHT;
+    if ((uint32_t)y > t->down) code |= y < 0 ? EW_OUT_TOP : EW_OUT_BOTTOM;
+    return (uint8_t)code;
+}
+
+void ew_project(ew_screen_vertex *out, const ew_transform *t, const ew_homogeneous_vertex *h, int32_t e_x,
+                int32_t e_y, int64_t near_w)
+{
     if (h->w < near_w) {
-        out->outcode = EW_OUT_NEAR;
+        hide(out);
         return;
     }
     int w_zeros = ew_clz64((uint64_t)h->w), near_zeros = ew_clz64((uint64_t)near_w);
@@ -120,23 +231,68 @@ void ew_project(ew_screen_vertex *out, const ew_transform *t, const ew_homogeneo
     out->w = w < 1 ? 1 : w > 0x80000000u ? 0x80000000u : (uint32_t)w;
 
     const int32_t guard = EW_GUARD_PX * 4096;
-    uint8_t code = 0;
-    if (out->x > guard || out->x < -guard || out->y > guard || out->y < -guard) code |= EW_OUT_GUARD;
-    const ew_viewport *view = &t->viewport;
-    if (out->x < (int32_t)view->x * 4096) code |= EW_OUT_LEFT;
-    if (out->x > ((int32_t)view->x + view->width) * 4096) code |= EW_OUT_RIGHT;
-    if (out->y < (int32_t)view->y * 4096) code |= EW_OUT_TOP;
-    if (out->y > ((int32_t)view->y + view->height) * 4096) code |= EW_OUT_BOTTOM;
-    out->outcode = code;
+    out->outcode = outcode_of(t, out->x, out->y);
+    if (out->x > guard || out->x < -guard || out->y > guard || out->y < -guard) out->outcode |= EW_OUT_GUARD;
+}
+
+/* ---- every vertex ---- */
+
+/* Sums to the screen; w >= t->w_safe. Returns 0, and has written nothing, when the position
+ * does not fit. */
+static inline int project_quickly(ew_screen_vertex *out, const ew_transform *t, int32_t x, int32_t y,
+                                  int32_t w)
+{
+    /* 1/w = r 2^(up - 60). A position in units of 2^-12 px is
+     * x 2^exponent 2^12 / w = (x 2^up) r 2^(exponent - 48), and shift = 15 - exponent: the
+     * product's upper half, 2^(shift + 1) times too large. */
+    int up = ew_clz32((uint32_t)w) - 2;
+    uint32_t r = ew_recip_newton_inline((uint32_t)w << 2 << up);
+    int32_t wide_x = (int32_t)((uint32_t)x << up), wide_y = (int32_t)((uint32_t)y << up);
+    if (EW_ASR(wide_x, up) != x || EW_ASR(wide_y, up) != y) return 0;
+    x = EW_ASR(EW_ASR(ew_mulh_s32(wide_x, (int32_t)r), t->shift_x) + 1, 1);
+    y = EW_ASR(EW_ASR(ew_mulh_s32(wide_y, (int32_t)r), t->shift_y) + 1, 1);
+    out->x = x;
+    out->y = y;
+    /* near/w = near_m 2^-(near_shift + 3) r 2^(up - 60), times 2^31: the upper half is below
+     * 2^31 and 2^(near_shift - up) times too large, w_safe sees to it that this is 1 at least */
+    uint32_t near = ew_mulh_u32(t->near_m, r) << 1;
+    out->w = ((near >> (t->near_shift - up)) + 1u) >> 1;
+    out->outcode = outcode_of(t, x, y);
+    return 1;
+}
+
+static void project_carefully(ew_screen_vertex *out, const ew_transform *t, const ew_vertex16 *in, int32_t w)
+{
+    if (w < t->w_hidden) {
+        hide(out);
+        return;
+    }
+    ew_homogeneous_vertex h;
+    ew_homogeneous(&h, t, in);
+    ew_project(out, t, &h, t->x.e - t->w.e, t->y.e - t->w.e, t->near_w);
 }
 
 void ew_transform_vertices(const ew_transform *transform, const ew_vertex16 *in, uint32_t count,
                            ew_screen_vertex *out)
 {
-    int32_t e_x = transform->x.e - transform->w.e, e_y = transform->y.e - transform->w.e;
-    for (uint32_t i = 0; i < count; i++) {
-        ew_homogeneous_vertex h;
-        ew_homogeneous(&h, transform, &in[i]);
-        ew_project(&out[i], transform, &h, e_x, e_y, transform->near_w);
+#if EW_LONG_MULTIPLY
+    const ew_row32 *x32 = &transform->x32, *y32 = &transform->y32, *w32 = &transform->w32;
+    const int32_t unit = 65536; /* to q1.31 */
+#define SUM(row) ew_sum32(row, x, y, z)
+#else
+    ew_row_pieces x32[1], y32[1], w32[1];
+    ew_row_pieces_init(x32, &transform->x32);
+    ew_row_pieces_init(y32, &transform->y32);
+    ew_row_pieces_init(w32, &transform->w32);
+    const int32_t unit = 1;
+#define SUM(row) ew_sum32_pieces(row, x, y, z)
+#endif
+    for (const ew_vertex16 *end = in + count; in < end; in++, out++) {
+        int32_t x = in->x * unit, y = in->y * unit, z = in->z * unit;
+        int32_t w = SUM(w32);
+        if (w < transform->w_safe || !project_quickly(out, transform, SUM(x32), SUM(y32), w)) {
+            project_carefully(out, transform, in, w);
+        }
     }
+#undef SUM
 }

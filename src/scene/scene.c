@@ -343,6 +343,13 @@ static int32_t between(int32_t a, int32_t b, uint32_t f)
     return (int32_t)(a + EW_ASR(((int64_t)b - a) * (int64_t)f, 31));
 }
 
+static ew_quat quaternion_at(const uint8_t *p)
+{
+    ew_quat q = { ew_q2_30_from_q2_14(i16_at(p)), ew_q2_30_from_q2_14(i16_at(p + 2)),
+                  ew_q2_30_from_q2_14(i16_at(p + 4)), ew_q2_30_from_q2_14(i16_at(p + 6)) };
+    return q;
+}
+
 static int track_matrix(const ew_scene *scene, uint32_t track, uint32_t time_ms, ew_mat34 *out)
 {
     const uint8_t *p = record(scene, EW_SECTION_TRAK, track);
@@ -353,17 +360,14 @@ static int track_matrix(const ew_scene *scene, uint32_t track, uint32_t time_ms,
     const uint8_t *a = record(scene, EW_SECTION_KEYS, first + k);
     const uint8_t *b = f ? a + rules[EW_SECTION_KEYS].record_bytes : a;
 
-    int32_t t[3], s[3], q[4];
+    int32_t t[3], s[3];
     for (int i = 0; i < 3; i++) {
         t[i] = between(i32_at(a + 4 * i), i32_at(b + 4 * i), f);
         s[i] = between(i32_at(a + 20 + 4 * i), i32_at(b + 20 + 4 * i), f);
     }
-    for (int i = 0; i < 4; i++) {
-        q[i] = between(ew_q2_30_from_q2_14(i16_at(a + 12 + 2 * i)),
-                       ew_q2_30_from_q2_14(i16_at(b + 12 + 2 * i)), f);
-    }
-    ew_quat rotation = { q[0], q[1], q[2], q[3] };
-    return ew_mat34_from_trs(out, t, i16_at(p + 8), &rotation, s, i16_at(p + 10));
+    ew_quat from = quaternion_at(a + 12), to = quaternion_at(b + 12);
+    int error = ew_quat_slerp(&from, &from, &to, f);
+    return error ? error : ew_mat34_from_trs(out, t, i16_at(p + 8), &from, s, i16_at(p + 10));
 }
 
 int ew_scene_pose(const ew_scene *scene, uint32_t time_ms, ew_mat34 *world)
@@ -402,8 +406,9 @@ static int32_t draw_primitive(const ew_scene *scene, uint32_t number, const ew_p
     if (!error) error = ew_transform_set(&geometry->transform, projection, &model_view, viewport);
     if (error) return error;
     ew_transform_vertices(&geometry->transform, primitive.vertices, primitive.vertex_count, scratch);
-    return ew_draw_triangles(geometry, primitive.vertices, scratch, primitive.indices,
-                             primitive.index_count, primitive.uv_fraction_bits);
+    const ew_mesh mesh = { primitive.vertices, scratch, NULL, primitive.indices, primitive.index_count,
+                           primitive.uv_fraction_bits };
+    return ew_draw_triangles(geometry, &mesh);
 }
 
 int32_t ew_scene_draw(const ew_scene *scene, const ew_scene_camera *camera, const ew_mat34 *world,

@@ -108,7 +108,7 @@ Pose between(const BakedKey &a, const BakedKey &b, const BakedTrack &track, doub
     };
     return {
         mix(block(a.translation, track.translation_e), 1 - s, block(b.translation, track.translation_e), s),
-        normalised(mix(rotation_of(a), 1 - s, rotation_of(b), s)),
+        slerp(normalised(rotation_of(a)), normalised(rotation_of(b)), s),
         mix(block(a.scale, track.scale_e), 1 - s, block(b.scale, track.scale_e), s)};
 }
 

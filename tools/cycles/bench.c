@@ -44,7 +44,8 @@ __attribute__((noinline)) void bench_end(void);
 int32_t bench_draw(const bench_scene *s)
 {
     ew_transform_vertices(&geometry.transform, s->vertices, s->vertex_count, screen);
-    return ew_draw_triangles(&geometry, s->vertices, screen, s->indices, s->index_count, 4);
+    const ew_mesh mesh = { s->vertices, screen, NULL, s->indices, s->index_count, 4 };
+    return ew_draw_triangles(&geometry, &mesh);
 }
 void bench_end(void) { __asm__ volatile(""); }
 

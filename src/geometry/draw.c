@@ -1,0 +1,60 @@
+/* Triangles from indices: what cannot be seen is left out before anything is set up. */
+#include "project.h"
+
+/* Whether the triangle of the snapped corners is a front: its area negative. Most of a
+ * closed model is decided here. */
+static inline int faces_the_eye(const ew_screen_vertex *a, const ew_screen_vertex *b,
+                                const ew_screen_vertex *c)
+{
+    int32_t x0 = ew_snapped_from_q20_12(a->x), y0 = ew_snapped_from_q20_12(a->y);
+    int32_t dx1 = ew_snapped_from_q20_12(b->x) - x0, dy1 = ew_snapped_from_q20_12(b->y) - y0;
+    int32_t dx2 = ew_snapped_from_q20_12(c->x) - x0, dy2 = ew_snapped_from_q20_12(c->y) - y0;
+    return ew_product_less(dx1, dy2, dx2, dy1); /* |d| <= 2^26 */
+}
+
+/* Without colours in the mesh, the corners keep those that they have: white. */
+static int draw_whole(ew_geometry *geometry, const ew_mesh *mesh, const uint16_t index[3])
+{
+    ew_raster_vertex *const v = geometry->corner;
+    const int32_t uv_unit = (int32_t)1 << (12 - mesh->uv_fraction_bits);
+    for (int k = 0; k < 3; k++) {
+        const ew_vertex16 *corner = &mesh->vertices[index[k]];
+        const ew_screen_vertex *screen = &mesh->screen[index[k]];
+        v[k].x = screen->x;
+        v[k].y = screen->y;
+        v[k].w = screen->w;
+        v[k].u = corner->u * uv_unit; /* |u| 2^12 <= 2^27 */
+        v[k].v = corner->v * uv_unit;
+        if (mesh->colours) v[k].colour = mesh->colours[index[k]];
+    }
+    return ew_raster_triangle_in_range(geometry->raster, &v[0], &v[1], &v[2]);
+}
+
+void ew_geometry_init(ew_geometry *geometry, ew_raster *raster) { geometry->raster = raster; }
+
+int32_t ew_draw_triangles(ew_geometry *geometry, const ew_mesh *mesh)
+{
+    EW_ASSERT(mesh->index_count % 3 == 0 && mesh->uv_fraction_bits <= 12);
+    const ew_screen_vertex *const screen = mesh->screen;
+    const int one_sided = !(geometry->raster->material.flags & EW_DOUBLE_SIDED);
+    for (int k = 0; k < 3; k++) geometry->corner[k].colour = ew_white;
+
+    int32_t drawn = 0;
+    const uint16_t *index = mesh->indices, *const end = index + mesh->index_count;
+    for (; index < end; index += 3) {
+        const ew_screen_vertex *a = &screen[index[0]], *b = &screen[index[1]], *c = &screen[index[2]];
+        const int any = a->outcode | b->outcode | c->outcode;
+        int result;
+        if (any & (EW_OUT_NEAR | EW_OUT_GUARD)) {
+            if (a->outcode & b->outcode & c->outcode & ~EW_OUT_GUARD) continue;
+            result = ew_draw_clipped(geometry, mesh, index);
+        } else {
+            if (any && (a->outcode & b->outcode & c->outcode)) continue;
+            if (one_sided && !faces_the_eye(a, b, c)) continue;
+            result = draw_whole(geometry, mesh, index);
+        }
+        if (result < 0) return result;
+        drawn += result;
+    }
+    return drawn;
+}
