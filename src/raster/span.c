@@ -263,7 +263,7 @@ static void fill_any(const ew_raster *raster, const ew_triangle *t, position *at
     ew_run run;
     run.x = at->x, run.y = at->y;
     run.w = at->w, run.dw = at->dw;
-    run.u = run.v = run.du = run.dv = 0;
+    run.u = run.v = run.du = run.dv = run.u_down = run.v_down = 0;
     if (raster->texture.texels) {
         int up = 32 - EW_FRACTION(t->uv_bits);
         run.u = ((uint64_t)(int64_t)t->u_origin << 20) + ((uint64_t)(int64_t)(int32_t)from->u << up);
@@ -336,7 +336,7 @@ ALWAYS_INLINE void piece(const ew_raster *raster, const ew_triangle *t, linear *
     uint32_t w = (l->w >> down) << 1, dw = (uint32_t)EW_ASR((int32_t)l->dw, down) << 1;
     if (is_plain(t, w, dw, n)) {
         cursor at;
-        at.colour = raster->target.colour + offset;
+        at.colour = (uint16_t *)raster->target.colour + offset;
         at.depth = raster->target.depth + offset;
         at.w = w, at.dw = dw;
 #if EW_TRACE
