@@ -40,17 +40,18 @@ static uint16_t *depth_at(const ew_raster *raster, const ew_run *run)
     return raster->target.depth + (size_t)run->y * raster->target.stride + run->x;
 }
 
-static void test_depth(const ew_raster *raster, const ew_run *run, ew_piece *piece)
+EW_APART void test_depth(const ew_raster *raster, const ew_run *run, ew_piece *piece)
 {
     const uint16_t *depth = depth_at(raster, run);
-    uint32_t w = run->w, live = 0;
+    uint32_t w = run->w;
+    unsigned live = 0;
     for (int i = 0; i < piece->n; i++, w += run->dw) {
-        if (depth_of(w) > depth[i]) live |= (uint32_t)1 << i;
+        if (depth_of(w) > depth[i]) live |= 1u << i;
     }
-    piece->live = (uint16_t)live;
+    piece->live = (uint8_t)live;
 }
 
-static void write_depth(const ew_raster *raster, const ew_run *run, const ew_piece *piece)
+EW_APART void write_depth(const ew_raster *raster, const ew_run *run, const ew_piece *piece)
 {
     uint16_t *depth = depth_at(raster, run);
     uint32_t w = run->w;
@@ -59,7 +60,7 @@ static void write_depth(const ew_raster *raster, const ew_run *run, const ew_pie
     }
 }
 
-static void paint(const ew_raster *raster, ew_piece *piece)
+EW_APART void paint(const ew_raster *raster, ew_piece *piece)
 {
     uint16_t c[3];
     ew_decode_565(c, raster->material.colour, ew_wide(&raster->target));
@@ -68,7 +69,7 @@ static void paint(const ew_raster *raster, ew_piece *piece)
     }
 }
 
-static void shade(const ew_run *run, ew_piece *piece)
+EW_APART void shade(const ew_run *run, ew_piece *piece)
 {
     for (int k = 0; k < 3; k++) {
         uint32_t s = run->shade[k];
@@ -81,7 +82,7 @@ static void shade(const ew_run *run, ew_piece *piece)
     }
 }
 
-static void fog(const ew_raster *raster, const ew_run *run, ew_piece *piece)
+EW_APART void fog(const ew_raster *raster, const ew_run *run, ew_piece *piece)
 {
     const uint32_t range = raster->fog_near - raster->fog_far;
     uint16_t c[3];
@@ -105,7 +106,7 @@ static void fill_piece(const ew_raster *raster, const ew_run *run, int n)
     piece.x = run->x;
     piece.y = run->y;
     piece.n = n;
-    piece.live = (uint16_t)(0xFFFFu >> (EW_PIECE - n));
+    piece.live = (uint8_t)(0xFFu >> (EW_PIECE - n));
     if (raster->target.depth && !(flags & EW_NO_DEPTH_TEST)) {
         test_depth(raster, run, &piece);
         if (!piece.live) return;
@@ -121,21 +122,20 @@ static void fill_piece(const ew_raster *raster, const ew_run *run, int n)
     ew_target_put(&raster->target, &piece, raster->material.blend);
 }
 
-void ew_fill_any(const ew_raster *raster, const ew_run *run, int32_t n)
+void ew_fill_any(const ew_raster *raster, ew_run *run, int32_t n)
 {
-    ew_run at = *run;
     for (;;) {
         const int count = n < EW_PIECE ? (int)n : EW_PIECE;
 #if EW_TRACE
-        trace(raster, &at, count);
+        trace(raster, run, count);
 #endif
-        fill_piece(raster, &at, count);
+        fill_piece(raster, run, count);
         n -= count;
         if (n <= 0) return;
-        at.x = (uint16_t)(at.x + EW_PIECE);
-        at.w += at.dw * (uint32_t)EW_PIECE;
-        at.u += at.du * (uint32_t)EW_PIECE;
-        at.v += at.dv * (uint32_t)EW_PIECE;
-        for (int k = 0; k < 3; k++) at.shade[k] += at.dshade[k] * (uint32_t)EW_PIECE;
+        run->x = (uint16_t)(run->x + EW_PIECE);
+        run->w += run->dw * EW_PIECE;
+        run->u += run->du * EW_PIECE;
+        run->v += run->dv * EW_PIECE;
+        for (int k = 0; k < 3; k++) run->shade[k] += run->dshade[k] * EW_PIECE;
     }
 }

@@ -20,18 +20,26 @@ typedef struct ew_run {
                                     [0, 2^24] is clamped                                     */
 } ew_run;
 
-enum { EW_PIECE = 16 };
+enum { EW_PIECE = 8 };
 
 /* A piece of a run on its way to the target. Channels have 12 bits. */
 typedef struct ew_piece {
     uint16_t x, y;
     int n;         /* pixels, at most EW_PIECE                                             */
-    uint16_t live; /* bit i: pixel i is drawn                                              */
+    uint8_t live;  /* bit i: pixel i is drawn                                              */
     uint16_t colour[EW_PIECE][3];
 } ew_piece;
 
-/* Draws n pixels. */
-void ew_fill_any(const ew_raster *raster, const ew_run *run, int32_t n);
+/* Steps that are called once per piece or texel stay functions: inlined into each other, they
+ * would all take room on the stack at the same time. */
+#if defined(__GNUC__)
+#define EW_APART static __attribute__((noinline))
+#else
+#define EW_APART static
+#endif
+
+/* Draws n pixels. The run is used up: it moves along. */
+void ew_fill_any(const ew_raster *raster, ew_run *run, int32_t n);
 
 #if EW_TRACE
 /* u or v as ew_trace_fragment has it. */

@@ -51,10 +51,10 @@ static inline void ew_decode_grey(uint16_t out[3], uint32_t p)
 
 /* RGB565 stays RGB565 with one multiplication per channel; everything that dithers, or makes
  * a grey of three channels, needs white to be white. */
-static inline uint32_t ew_wide(const ew_target *target)
+static inline uint8_t ew_wide(const ew_target *target)
 {
     return (EW_WITH_TARGET_FORMATS && target->format > EW_TARGET_RGB565_SWAPPED) || (EW_WITH_DITHER && target->dither) ?
-               3u : 0u;
+               3 : 0;
 }
 
 /* a towards b by share / 256, rounded down; share <= 256, a and b <= 4095. */

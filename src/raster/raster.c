@@ -109,7 +109,7 @@ void ew_raster_clear(ew_raster *raster, uint16_t rgb565)
     const ew_target *target = &raster->target;
     const int as_it_is = target->format == EW_TARGET_RGB565 && !target->dither;
     ew_piece piece;
-    piece.live = 0xFFFF;
+    piece.live = 0xFF;
     for (int i = 0; i < EW_PIECE; i++) ew_decode_565(piece.colour[i], rgb565, ew_wide(target));
     for (uint16_t y = r->y0; y < r->y1; y++) {
         const size_t row = (size_t)y * target->stride;

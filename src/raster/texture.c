@@ -10,7 +10,7 @@
 
 /* ---- checks ---- */
 
-static int log2_bits_of(int format)
+static uint8_t log2_bits_of(int format)
 {
     static const uint8_t log2_bits[] = { 4, 3, 3, 3, 2, 0 };
     return EW_WITH_TEXTURE_FORMATS ? log2_bits[format] : 4;
@@ -81,17 +81,17 @@ static uint64_t scaled(uint64_t u, uint32_t ratio)
 
 typedef struct axis {
     uint64_t at, step; /* q32.32                                                           */
-    uint64_t period;   /* 0: clamped                                                       */
+    uint32_t period;   /* texels; 0: clamped                                               */
     uint32_t size;     /* texels of the level                                              */
 } axis;
 
 /* u and du are texels of the first level. `back` is taken off the position, below one texel. */
-static void axis_start(axis *a, uint64_t u, uint64_t du, uint32_t size, uint32_t level, int wrap, uint32_t inverse,
-                       uint32_t back)
+EW_APART void axis_start(axis *a, uint64_t u, uint64_t du, uint32_t size, uint32_t level, int wrap, uint32_t inverse,
+                         uint32_t back)
 {
     const int clamped = EW_WITH_WRAPS && wrap == EW_WRAP_CLAMP;
     a->size = EW_WITH_MIPS && level ? (size >> level ? size >> level : 1u) : size;
-    a->period = clamped ? 0 : (uint64_t)period_of(a->size, wrap) << 32;
+    a->period = clamped ? 0 : period_of(a->size, wrap);
     if (!clamped) {
         const uint64_t whole = (uint64_t)period_of(size, wrap) << 32;
         u = within_period(u, size, wrap, inverse);
@@ -104,8 +104,8 @@ static void axis_start(axis *a, uint64_t u, uint64_t du, uint32_t size, uint32_t
     }
     u -= back;
     if (!clamped) {
-        if (u >> 63) u += a->period;
-        if (du >> 63) du += a->period;
+        if (u >> 63) u += (uint64_t)a->period << 32;
+        if (du >> 63) du += (uint64_t)a->period << 32;
     }
     a->at = u;
     a->step = du;
@@ -115,7 +115,7 @@ static void axis_start(axis *a, uint64_t u, uint64_t du, uint32_t size, uint32_t
 static void axis_step(axis *a)
 {
     a->at += a->step;
-    if (a->period && a->at >= a->period) a->at -= a->period;
+    if (a->period && a->at >> 32 >= a->period) a->at -= (uint64_t)a->period << 32;
 }
 
 static uint32_t clamp(uint32_t i, uint32_t size)
@@ -128,9 +128,8 @@ static uint32_t texel_index(const axis *a, uint32_t next)
 {
     uint32_t i = (uint32_t)(a->at >> 32) + next;
     if (EW_WITH_WRAPS && !a->period) return clamp(i, a->size);
-    const uint32_t period = (uint32_t)(a->period >> 32);
-    if (i == period) i = 0;
-    return EW_WITH_WRAPS && i >= a->size ? period - 1u - i : i; /* above the size in a mirror only */
+    if (i == a->period) i = 0;
+    return EW_WITH_WRAPS && i >= a->size ? a->period - 1u - i : i; /* above the size in a mirror only */
 }
 
 #if EW_TRACE
@@ -173,113 +172,131 @@ uint32_t ew_texture_level(const ew_run *run)
 }
 #endif
 
-/* A level as it lies in memory. */
-typedef struct surface {
+/* A level as it lies in memory, and the position in it. */
+typedef struct sampler {
+    const ew_texture *texture;
     const uint8_t *texels;
-    uint32_t row_bytes;
-    const uint8_t *mask; /* NULL: none */
-    uint32_t mask_row_bytes;
-} surface;
+    const uint8_t *mask; /* NULL: none                                                     */
+    axis u, v;
+    uint16_t row_bytes, mask_row_bytes; /* 4096 at most                                     */
+    uint8_t log2_bits; /* of a texel                                                      */
+    uint8_t wide;      /* of ew_decode_565                                                */
+} sampler;
 
 static uint32_t row_bytes_of(uint32_t width, int log2_bits) { return ((width << log2_bits) + 7u) >> 3; }
 
-static surface surface_of(const ew_raster *raster, uint32_t level)
+static void find_level(sampler *s, uint32_t level)
 {
-    const ew_texture *t = &raster->texture;
-    const int log2_bits = log2_bits_of(t->format);
-    uint32_t width = t->width, height = t->height;
-    surface s;
-    s.texels = t->texels;
-    s.mask = EW_WITH_CUTOUTS && (raster->material.flags & EW_ALPHA_MASK) ? t->mask : NULL;
+    uint32_t width = s->texture->width, height = s->texture->height;
+    s->texels = s->texture->texels;
     for (; EW_WITH_MIPS && level > 0; level--) {
-        s.texels += (size_t)row_bytes_of(width, log2_bits) * height;
-        if (s.mask) s.mask += (size_t)row_bytes_of(width, 0) * height;
+        s->texels += (size_t)row_bytes_of(width, s->log2_bits) * height;
+        if (s->mask) s->mask += (size_t)row_bytes_of(width, 0) * height;
         width = width > 1 ? width >> 1 : 1;
         height = height > 1 ? height >> 1 : 1;
     }
-    s.row_bytes = row_bytes_of(width, log2_bits);
-    s.mask_row_bytes = row_bytes_of(width, 0);
-    return s;
+    s->row_bytes = (uint16_t)row_bytes_of(width, s->log2_bits);
+    s->mask_row_bytes = (uint16_t)row_bytes_of(width, 0);
 }
 
 /* ---- texels ---- */
 
-static uint32_t stored(const surface *s, int format, uint32_t column, uint32_t row)
+static uint32_t stored(const sampler *s, uint32_t column, uint32_t row)
 {
     const uint8_t *line = s->texels + (size_t)row * s->row_bytes;
-    if (!EW_WITH_TEXTURE_FORMATS || format == EW_TEXTURE_RGB565) return ((const uint16_t *)(const void *)line)[column];
-    return ew_packed_get(line, column, log2_bits_of(format));
+    if (!EW_WITH_TEXTURE_FORMATS || s->log2_bits == 4) return ((const uint16_t *)(const void *)line)[column];
+    return ew_packed_get(line, column, s->log2_bits);
 }
 
-static void decode(uint16_t out[3], const ew_texture *t, uint32_t value, uint32_t wide)
+EW_APART void fetch(const sampler *s, uint32_t column, uint32_t row, uint16_t out[3])
 {
+    const ew_texture *t = s->texture;
+    uint32_t value = stored(s, column, row);
     switch (EW_WITH_TEXTURE_FORMATS ? t->format : EW_TEXTURE_RGB565) {
-    case EW_TEXTURE_RGB565: ew_decode_565(out, value, wide); break;
-    case EW_TEXTURE_RGB332: ew_decode_332(out, value); break;
-    case EW_TEXTURE_GREY8: ew_decode_grey(out, value); break;
-    default: ew_decode_565(out, t->palette[value], wide); break;
+    case EW_TEXTURE_RGB565: break;
+    case EW_TEXTURE_RGB332: ew_decode_332(out, value); return;
+    case EW_TEXTURE_GREY8: ew_decode_grey(out, value); return;
+    default: value = t->palette[value]; break;
     }
+    ew_decode_565(out, value, s->wide);
 }
 
 /* Whether a texel is left out. */
-static int is_cut(const ew_raster *raster, const surface *s, uint32_t column, uint32_t row)
+EW_APART int is_cut(const sampler *s, int flags, uint32_t column, uint32_t row)
 {
-    const ew_texture *t = &raster->texture;
     if (s->mask && !ew_packed_get(s->mask + (size_t)row * s->mask_row_bytes, column, 0)) return 1;
-    return (raster->material.flags & EW_COLOUR_KEY) && stored(s, t->format, column, row) == t->key;
+    return (flags & EW_COLOUR_KEY) && stored(s, column, row) == s->texture->key;
 }
 
+#if EW_WITH_BILINEAR
 /* The four texels around a position whose whole part is the upper left one, weighted in
  * 1/32: fu and fv are five bits of the fraction. */
-static void bilinear(uint16_t out[3], const ew_texture *t, const surface *s, const axis *u, const axis *v, uint32_t fu,
-                     uint32_t fv, uint32_t wide)
+EW_APART void fetch_four(const sampler *s, uint32_t fu, uint32_t fv, uint16_t out[3])
 {
-    const uint32_t both = (fu * fv + 16u) >> 5;
-    const uint32_t weight[4] = { 32u - fu - fv + both, fu - both, fv - both, both }; /* none below 0, sum 32 */
+    const uint32_t both = (fu * fv + 16u) >> 5; /* the weights: none is below 0, their sum is 32 */
     uint32_t sum[3] = { 0, 0, 0 };
     for (uint32_t k = 0; k < 4; k++) {
-        uint16_t c[3];
-        decode(c, t, stored(s, t->format, texel_index(u, k & 1u), texel_index(v, k >> 1)), wide);
-        for (int j = 0; j < 3; j++) sum[j] += weight[k] * c[j]; /* <= 32 * 4095 */
+        const uint32_t weight = k == 0 ? 32u - fu - fv + both : k == 1 ? fu - both : k == 2 ? fv - both : both;
+        fetch(s, texel_index(&s->u, k & 1u), texel_index(&s->v, k >> 1), out);
+        for (int j = 0; j < 3; j++) sum[j] += weight * out[j]; /* <= 32 * 4095 */
     }
     for (int j = 0; j < 3; j++) out[j] = (uint16_t)(sum[j] >> 5);
 }
+#endif
 
 /* ---- pieces ---- */
 
 /* Bilinear positions begin at the upper left texel's centre; 1/64 texel rounds the weights. */
 #define HALF_TEXEL ((UINT32_C(1) << 31) - (UINT32_C(1) << 26))
 
-/* Colours of one level; they take the place of what the piece has by `share` / 256.
- * `decides`: whether this level says which texels are left out. */
-static void sample_level(const ew_raster *raster, const ew_run *run, ew_piece *piece, uint32_t level, uint32_t share,
-                         int decides)
+EW_APART void start(sampler *s, const ew_raster *raster, const ew_run *run, uint32_t level)
 {
     const ew_texture *t = &raster->texture;
-    const surface s = surface_of(raster, level);
+    const uint32_t back = raster->material.filter != EW_FILTER_NEAREST ? HALF_TEXEL : 0;
+    s->texture = t;
+    s->mask = EW_WITH_CUTOUTS && (raster->material.flags & EW_ALPHA_MASK) ? t->mask : NULL;
+    s->log2_bits = log2_bits_of(t->format);
+    s->wide = ew_wide(&raster->target);
+    find_level(s, level);
+    axis_start(&s->u, run->u, run->du, t->width, level, t->wrap_u, raster->inverse_width, back);
+    axis_start(&s->v, run->v, run->dv, t->height, level, t->wrap_v, raster->inverse_height, back);
+}
+
+/* The colour at the sampler's position; 0 where the texel is left out. */
+EW_APART int sample(const sampler *s, int smooth, int flags, uint16_t out[3])
+{
+    const uint32_t fu = smooth ? (uint32_t)(s->u.at >> 27 & 31u) : 0, fv = smooth ? (uint32_t)(s->v.at >> 27 & 31u) : 0;
+    /* the nearest texel is the one with the larger weight */
+    const uint32_t column = texel_index(&s->u, fu >> 4), row = texel_index(&s->v, fv >> 4);
+    if (EW_WITH_CUTOUTS && flags && is_cut(s, flags, column, row)) return 0;
+#if EW_WITH_BILINEAR
+    if (fu | fv) {
+        fetch_four(s, fu, fv, out);
+        return 1;
+    }
+#endif
+    fetch(s, column, row, out);
+    return 1;
+}
+
+/* Colours of one level; they take the place of what the piece has by `share` / 256.
+ * `decides`: whether this level says which texels are left out. */
+EW_APART void sample_level(const ew_raster *raster, const ew_run *run, ew_piece *piece, uint32_t level, uint32_t share,
+                           int decides)
+{
     const int smooth = EW_WITH_BILINEAR && raster->material.filter != EW_FILTER_NEAREST;
-    const int cut = EW_WITH_CUTOUTS && decides && (raster->material.flags & (EW_COLOUR_KEY | EW_ALPHA_MASK));
-    const uint32_t wide = ew_wide(&raster->target), back = smooth ? HALF_TEXEL : 0;
-    axis u, v;
-    axis_start(&u, run->u, run->du, t->width, level, t->wrap_u, raster->inverse_width, back);
-    axis_start(&v, run->v, run->dv, t->height, level, t->wrap_v, raster->inverse_height, back);
-    for (int i = 0; i < piece->n; i++, axis_step(&u), axis_step(&v)) {
+    const int flags = decides ? raster->material.flags & (EW_COLOUR_KEY | EW_ALPHA_MASK) : 0;
+    sampler s;
+    start(&s, raster, run, level);
+    for (int i = 0; i < piece->n; i++, axis_step(&s.u), axis_step(&s.v)) {
+        uint16_t c[3];
         if (!(piece->live >> i & 1)) continue;
-        /* five bits of the fraction; the nearest texel is the one with the larger weight */
-        const uint32_t fu = smooth ? (uint32_t)(u.at >> 27 & 31u) : 0, fv = smooth ? (uint32_t)(v.at >> 27 & 31u) : 0;
-        const uint32_t column = texel_index(&u, fu >> 4), row = texel_index(&v, fv >> 4);
-        if (cut && is_cut(raster, &s, column, row)) {
-            piece->live = (uint16_t)(piece->live & ~((uint32_t)1 << i));
+        if (!sample(&s, smooth, flags, c)) {
+            piece->live = (uint8_t)(piece->live & ~(1u << i));
             continue;
         }
-        uint16_t c[3];
-        if (smooth) {
-            bilinear(c, t, &s, &u, &v, fu, fv, wide);
-        } else {
-            decode(c, t, stored(&s, t->format, column, row), wide);
-        }
         for (int j = 0; j < 3; j++) {
-            if (share < 256) c[j] = ew_mix256(piece->colour[i][j], c[j], share);
+            if (EW_WITH_MIPS && share < 256) c[j] = ew_mix256(piece->colour[i][j], c[j], share);
             piece->colour[i][j] = c[j];
         }
     }
