@@ -18,12 +18,14 @@ $(BIN)/ew-accuracy: $(addprefix $(B)/host_tests/accuracy/,accuracy.o scene_measu
 # ---- unit tests ----
 T := $(B)/tests
 UNIT := $(B)/host_tests/unit
-UNIT_TESTS := $(addprefix $(T)/test_,fixed recip raster attributes geometry accuracy scene display display_faults stream readme)
+UNIT_TESTS := $(addprefix $(T)/test_,fixed recip raster fill attributes geometry accuracy scene display display_faults stream readme)
 
 LINK_TEST = @mkdir -p $(@D); echo "LINK $@"; $(CC) $(HOST_CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka -lm
 $(addprefix $(T)/test_,fixed recip scene display display_faults): $(T)/test_%: $(UNIT)/test_%.o $(UNIT)/unit.o $(LIB)
 	$(LINK_TEST)
 $(T)/test_raster: $(UNIT)/test_raster.o $(UNIT)/unit.o $(B)/host_tests/reference/referee.o $(LIB)
+	$(LINK_TEST)
+$(T)/test_fill: $(UNIT)/test_fill.o $(UNIT)/unit.o $(B)/host_tests/reference/ref_fill.o $(LIB)
 	$(LINK_TEST)
 $(T)/test_geometry $(T)/test_accuracy: $(T)/test_%: $(UNIT)/test_%.o $(UNIT)/unit.o $(REFEREE_OBJS) $(TRACE_OBJS)
 	$(LINK_TEST)

@@ -183,8 +183,8 @@ int ew_raster_set_scissor(ew_raster *raster, const ew_rect *rect);
 int ew_raster_set_material(ew_raster *raster, const ew_material *material);
 
 /* Fog for materials with EW_FOG: none at near/z >= w_near, nothing but `rgb565` at near/z <=
- * w_far, linear in near/z between. Returns EW_OK, EW_ERR_ARGUMENT unless w_near > w_far, or
- * EW_ERR_UNSUPPORTED. */
+ * w_far, linear in near/z between. Returns EW_OK, EW_ERR_ARGUMENT unless w_far < w_near <=
+ * 2^31, or EW_ERR_UNSUPPORTED. */
 int ew_raster_set_fog(ew_raster *raster, uint16_t rgb565, ew_uq1_31 w_near, ew_uq1_31 w_far);
 
 /* Fills the scissor rectangle with a colour, converted and dithered as drawn ones are, and

@@ -88,7 +88,7 @@ int ew_raster_set_material(ew_raster *raster, const ew_material *material)
 
 int ew_raster_set_fog(ew_raster *raster, uint16_t rgb565, ew_uq1_31 w_near, ew_uq1_31 w_far)
 {
-    if (w_near <= w_far) return EW_ERR_ARGUMENT;
+    if (w_near <= w_far || w_near > 0x80000000u) return EW_ERR_ARGUMENT;
     if (!EW_WITH_FOG) return EW_ERR_UNSUPPORTED;
     const uint32_t range = w_near - w_far;
     const int bits = 32 - ew_clz32(range);
