@@ -45,7 +45,10 @@ $(T)/test_readme: $(UNIT)/test_readme.o $(T)/readme_example.o $(UNIT)/unit.o $(B
 
 # ---- configurations: each needs a core of its own ----
 # recip-N: the reciprocals with a table of 2^N entries; sub-N: coverage at N subpixel bits.
-CONFIG_TESTS := $(foreach n,4 5 6 7 9,$(T)/test_recip-$(n)) $(foreach n,4 6,$(T)/test_raster-$(n))
+# fill-without-X: the fills with EW_WITH_X = 0, under UBSan; EVERYTHING is all of them.
+FILL_PARTS := SHADING FOG BLENDS CUTOUTS BILINEAR MIPS WRAPS TEXTURE_FORMATS TARGET_FORMATS DITHER
+CONFIG_TESTS := $(foreach n,4 5 6 7 9,$(T)/test_recip-$(n)) $(foreach n,4 6,$(T)/test_raster-$(n)) \
+  $(foreach part,$(FILL_PARTS) EVERYTHING,$(T)/test_fill-without-$(part))
 $(T)/test_recip-%: host_tests/unit/test_recip.c host_tests/unit/unit.c fixed/recip.c fixed/recip_table.inc
 	@mkdir -p $(@D); echo "CC $@"
 	@$(CC) $(HOST_CFLAGS) -DEW_RECIP_BITS=$* -o $@ $(filter %.c,$^) -lcmocka -lm
@@ -53,6 +56,11 @@ $(T)/test_raster-%: host_tests/unit/test_raster.c host_tests/unit/unit.c host_te
   $(filter fixed/% src/raster/%,$(CORE_SRCS))
 	@mkdir -p $(@D); echo "CC $@"
 	@$(CC) $(HOST_CFLAGS) -DEW_SUBPIXEL_BITS=$* -o $@ $(filter %.c,$^) -lcmocka -lm
+$(T)/test_fill-without-%: host_tests/unit/test_fill.c host_tests/unit/unit.c host_tests/reference/ref_fill.c \
+  $(filter fixed/% src/raster/%,$(CORE_SRCS)) $(wildcard src/raster/*.h include/edgewalk/*.h)
+	@mkdir -p $(@D); echo "CC $@"
+	@$(CC) $(HOST_CFLAGS) -Werror -DSHARE=8 -fsanitize=undefined -fno-sanitize-recover=all -o $@ $(filter %.c,$^) -lcmocka -lm \
+	  $(patsubst %,-DEW_WITH_%=0,$(if $(filter EVERYTHING,$*),$(FILL_PARTS),$*))
 
 # ---- goals ----
 accuracy: $(T)/test_accuracy  ## the referee's figures for the standard scenes, rung by rung

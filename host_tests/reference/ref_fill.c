@@ -41,7 +41,7 @@ static unsigned item(const void *row, int i, int bits)
     if (bits == 16) return ((const uint16_t *)row)[i];
     unsigned value = 0;
     for (int bit = i * bits; bit < (i + 1) * bits; bit++) {
-        value = 2 * value + (((const uint8_t *)row)[bit / 8] >> (7 - bit % 8) & 1u);
+        value = 2 * value + ((unsigned)((const uint8_t *)row)[bit / 8] >> (7 - bit % 8) & 1u);
     }
     return value;
 }

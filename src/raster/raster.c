@@ -51,7 +51,8 @@ static int check_material(const ew_material *m)
 }
 
 /* What span.c's loop for textures knows: RGB565 as it is stored, from one power of two by
- * another, at most 2^16 texels, to a target with depth. */
+ * another, at most 2^16 texels, to a target with depth. Dither changes nothing that comes
+ * from as many bits. */
 static int is_plain(const ew_raster *raster)
 {
     const ew_target *target = &raster->target;
@@ -60,8 +61,7 @@ static int is_plain(const ew_raster *raster)
            !(t->width & (t->width - 1u)) && !(t->height & (t->height - 1u)) && raster->log2_width >= 1 &&
            raster->log2_height >= 1 && raster->log2_width + raster->log2_height <= 16 &&
            raster->material.filter == EW_FILTER_NEAREST && !raster->material.blend &&
-           !(raster->material.flags & ~EW_DOUBLE_SIDED) && target->depth && target->format == EW_TARGET_RGB565 &&
-           !target->dither;
+           !(raster->material.flags & ~EW_DOUBLE_SIDED) && target->depth && target->format == EW_TARGET_RGB565;
 }
 
 /* Rounded up. */

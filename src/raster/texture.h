@@ -15,7 +15,7 @@ uint32_t ew_texture_inverse(uint32_t size);
  * out are no longer live. */
 void ew_texture_sample(const ew_raster *raster, const ew_run *run, ew_piece *piece);
 
-/* log2 of the texels per pixel, in 1/256, at most 1/100 off; 0 where it is below 0. Steps are
+/* log2 of the texels per pixel, in 1/256, at most 1/150 off; 0 where it is below 0. Steps are
  * those of ew_run. */
 uint32_t ew_texture_level(const ew_run *run);
 
