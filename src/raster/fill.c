@@ -72,8 +72,8 @@ EW_APART void paint(const ew_raster *raster, ew_piece *piece)
 EW_APART void shade(const ew_run *run, ew_piece *piece)
 {
     for (int k = 0; k < 3; k++) {
-        uint32_t s = run->shade[k];
-        for (int i = 0; i < piece->n; i++, s += run->dshade[k]) {
+        uint32_t s = (uint32_t)run->shade[k];
+        for (int i = 0; i < piece->n; i++, s += (uint32_t)run->dshade[k]) {
             if (!is_live(piece, i)) continue;
             uint32_t light = s >> 16; /* 256: all of it */
             if (light > 256) light = s >> 31 ? 0 : 256;
@@ -136,6 +136,8 @@ void ew_fill_any(const ew_raster *raster, ew_run *run, int32_t n)
         run->w += run->dw * EW_PIECE;
         run->u += run->du * EW_PIECE;
         run->v += run->dv * EW_PIECE;
-        for (int k = 0; k < 3; k++) run->shade[k] += run->dshade[k] * EW_PIECE;
+        for (int k = 0; k < 3; k++) {
+            run->shade[k] = (int32_t)((uint32_t)run->shade[k] + (uint32_t)run->dshade[k] * EW_PIECE);
+        }
     }
 }

@@ -299,7 +299,10 @@ NOINLINE void piece_of_any(const ew_raster *raster, const ew_triangle *t, positi
     attribute_run run;
     if (t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_CONSTANT) {
         run.u = l->u, run.du = l->du, run.v = l->v, run.dv = l->dv;
-        for (int i = 0; i < 3; i++) run.shade[i] = l->shade[i], run.dshade[i] = l->dshade[i];
+        for (int i = 0; i < 3; i++) {
+            run.shade[i] = t->attributes > 2 ? l->shade[i] : 0;
+            run.dshade[i] = t->attributes > 2 ? l->dshade[i] : 0;
+        }
         fill_any(raster, t, at, &run, n);
         return;
     }
