@@ -272,8 +272,9 @@ static void check_case(const fill_case *c)
         ref_fill(&target, &c->material, &c->fog, &c->run, k);
         if (same_pixels()) return;
     }
-    const ew_rect pixels = { (uint16_t)c->run.x, (uint16_t)c->run.y, (uint16_t)(c->run.x + c->run.n), (uint16_t)(c->run.y + 1) };
-    print_differences(c, &pixels);
+    const ew_run at = core_run(&c->run);
+    const ew_rect of_run = { at.x, at.y, (uint16_t)(at.x + c->run.n), (uint16_t)(at.y + 1) };
+    print_differences(c, &of_run);
     fail_msg("differs from the referee");
 }
 
