@@ -24,3 +24,11 @@ demo:  ## set up what is missing; bake SCENE=file.glb, draw it, stream it to DIS
 demo-run: $(PROGRAMS) $(BIN)/ew-accuracy $(COURTYARD:.ewb=.glb)
 	@examples/demo.sh
 .PHONY: demo demo-run
+
+example-fills: build/fills.png  ## a sheet of all fills: build/fills.png
+build/fills.png: $(BIN)/fills
+	$(BIN)/fills $@
+$(BIN)/fills: $(B)/examples/fills.o $(addprefix $(B)/tools/common/,image.o whole_file.o) $(LIB)
+	@mkdir -p $(@D)
+	$(CC) $(HOST_CFLAGS) $(LDFLAGS) -o $@ $^ -lpng -lz
+.PHONY: example-fills

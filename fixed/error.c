@@ -12,6 +12,7 @@ const char *ew_error_text(int code)
     case EW_ERR_CHECKSUM: return "wrong checksum, the data was changed";
     case EW_ERR_CORRUPT: return "an offset, index or count points outside";
     case EW_ERR_ROOM: return "not enough memory given";
+    case EW_ERR_UNSUPPORTED: return "a feature that this build leaves out";
     default: return "unknown error";
     }
 }

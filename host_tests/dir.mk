@@ -18,12 +18,14 @@ $(BIN)/ew-accuracy: $(addprefix $(B)/host_tests/accuracy/,accuracy.o scene_measu
 # ---- unit tests ----
 T := $(B)/tests
 UNIT := $(B)/host_tests/unit
-UNIT_TESTS := $(addprefix $(T)/test_,fixed recip quaternion light raster attributes geometry accuracy scene display display_faults stream readme)
+UNIT_TESTS := $(addprefix $(T)/test_,fixed recip quaternion light raster fill attributes geometry accuracy scene display display_faults stream readme)
 
 LINK_TEST = @mkdir -p $(@D); echo "LINK $@"; $(CC) $(HOST_CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka -lm
 $(addprefix $(T)/test_,fixed recip quaternion light scene display display_faults): $(T)/test_%: $(UNIT)/test_%.o $(UNIT)/unit.o $(LIB)
 	$(LINK_TEST)
 $(T)/test_raster: $(UNIT)/test_raster.o $(UNIT)/unit.o $(B)/host_tests/reference/referee.o $(LIB)
+	$(LINK_TEST)
+$(T)/test_fill: $(UNIT)/test_fill.o $(UNIT)/unit.o $(B)/host_tests/reference/ref_fill.o $(LIB)
 	$(LINK_TEST)
 $(T)/test_geometry $(T)/test_accuracy: $(T)/test_%: $(UNIT)/test_%.o $(UNIT)/unit.o $(REFEREE_OBJS) $(TRACE_OBJS)
 	$(LINK_TEST)
@@ -36,15 +38,18 @@ $(T)/test_stream: $(UNIT)/test_stream.o $(UNIT)/unit.o \
 $(T)/readme_example.c: README.md
 	@mkdir -p $(@D)
 	awk '/^```c$$/ { on = 1; next } /^```$$/ { on = 0 } on' $< > $@
-$(T)/readme_example.o: $(T)/readme_example.c
+$(T)/readme_example.o: $(T)/readme_example.c $(wildcard include/edgewalk/*.h)
 	$(CC) -std=c99 -pedantic -Wall -Wextra -Dmain=readme_main -Iinclude -c -o $@ $<
 $(T)/test_readme: $(UNIT)/test_readme.o $(T)/readme_example.o $(UNIT)/unit.o $(B)/host_tests/reference/referee.o $(LIB)
 	$(LINK_TEST)
 
 # ---- configurations: each needs a core of its own ----
 # recip-N: the reciprocals with a table of 2^N entries; raster-N: coverage at N subpixel bits;
-# geometry-pieces: products as on a core without a long multiply.
-CONFIG_TESTS := $(foreach n,4 5 6 7 9,$(T)/test_recip-$(n)) $(foreach n,4 6,$(T)/test_raster-$(n)) $(T)/test_geometry-pieces
+# geometry-pieces: products as on a core without a long multiply; fill-without-X: the fills
+# with EW_WITH_X = 0, under UBSan; EVERYTHING is all of them.
+FILL_PARTS := SHADING FOG BLENDS CUTOUTS BILINEAR MIPS WRAPS TEXTURE_FORMATS TARGET_FORMATS DITHER
+CONFIG_TESTS := $(foreach n,4 5 6 7 9,$(T)/test_recip-$(n)) $(foreach n,4 6,$(T)/test_raster-$(n)) $(T)/test_geometry-pieces \
+  $(foreach part,$(FILL_PARTS) EVERYTHING,$(T)/test_fill-without-$(part))
 $(T)/test_recip-%: host_tests/unit/test_recip.c host_tests/unit/unit.c fixed/recip.c fixed/recip_table.inc
 	@mkdir -p $(@D); echo "CC $@"
 	@$(CC) $(HOST_CFLAGS) -DEW_RECIP_BITS=$* -o $@ $(filter %.c,$^) -lcmocka -lm
@@ -56,6 +61,11 @@ $(T)/test_geometry-pieces: $(addprefix host_tests/,unit/test_geometry.c unit/uni
   reference/scenes.c accuracy/measure.c) $(filter fixed/% src/raster/% src/geometry/%,$(CORE_SRCS))
 	@mkdir -p $(@D); echo "CC $@"
 	@$(CC) $(HOST_CFLAGS) -DEW_LONG_MULTIPLY=0 -DEW_TRACE=1 -o $@ $(filter %.c,$^) -lcmocka -lm
+$(T)/test_fill-without-%: host_tests/unit/test_fill.c host_tests/unit/unit.c host_tests/reference/ref_fill.c \
+  $(filter fixed/% src/raster/%,$(CORE_SRCS)) $(wildcard src/raster/*.h include/edgewalk/*.h)
+	@mkdir -p $(@D); echo "CC $@"
+	@$(CC) $(HOST_CFLAGS) -Werror -DSHARE=8 -fsanitize=undefined -fno-sanitize-recover=all -o $@ $(filter %.c,$^) -lcmocka -lm \
+	  $(patsubst %,-DEW_WITH_%=0,$(if $(filter EVERYTHING,$*),$(FILL_PARTS),$*))
 
 # ---- goals ----
 accuracy: $(T)/test_accuracy  ## the referee's figures for the standard scenes, rung by rung

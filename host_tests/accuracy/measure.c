@@ -301,7 +301,7 @@ void measure_end(measures *result, double border)
             const pixel *p = &now.pixels[index_of(x, y)];
             if (p->hits) now.m.covered_px++;
             if ((p->hits != 0) != p->truth) now.m.wrong_truth_px++;
-            uint16_t colour = now.target.colour[(size_t)y * now.target.stride + (size_t)x];
+            uint16_t colour = ((const uint16_t *)now.target.colour)[(size_t)y * now.target.stride + (size_t)x];
             if (!pixel_right(p, colour, border)) now.m.colour_px++;
         }
     }

@@ -456,7 +456,7 @@ static void arguments_are_checked(void **state)
     assert_int_equal(ew_raster_set_material(&r, &m), EW_ERR_ARGUMENT);
     m = material, m.tolerance = EW_TOLERANCE_MAX + 1;
     assert_int_equal(ew_raster_set_material(&r, &m), EW_ERR_ARGUMENT);
-    m = material, m.flags = 8;
+    m = material, m.flags = 128;
     assert_int_equal(ew_raster_set_material(&r, &m), EW_ERR_ARGUMENT);
     texture.width = 4096;
     assert_int_equal(ew_raster_set_material(&r, &material), EW_ERR_ARGUMENT);

@@ -38,6 +38,59 @@
 #endif
 #endif
 
+/* Parts of the fills (docs/fills.md): 1, the default, has them; 0 leaves their code out, and
+ * a target, a material or a fog that asks for them gets EW_ERR_UNSUPPORTED. What the parts
+ * cost: docs/fills.md.
+ *
+ *   EW_WITH_SHADING          EW_SHADED: the colours of corners
+ *   EW_WITH_FOG              EW_FOG and ew_raster_set_fog
+ *   EW_WITH_BLENDS           EW_BLEND_HALF and EW_BLEND_ADD
+ *   EW_WITH_CUTOUTS          EW_COLOUR_KEY and EW_ALPHA_MASK
+ *   EW_WITH_BILINEAR         EW_FILTER_BILINEAR; EW_FILTER_TRILINEAR needs EW_WITH_MIPS besides
+ *   EW_WITH_MIPS             textures of more levels than one
+ *   EW_WITH_WRAPS            EW_WRAP_CLAMP and EW_WRAP_MIRROR, and sizes that are no powers of two
+ *   EW_WITH_TEXTURE_FORMATS  textures of other formats than RGB565
+ *   EW_WITH_TARGET_FORMATS   targets of other formats than RGB565 in the machine's order
+ *   EW_WITH_DITHER           ew_target.dither
+ */
+#ifndef EW_WITH_SHADING
+#define EW_WITH_SHADING 1
+#endif
+#ifndef EW_WITH_FOG
+#define EW_WITH_FOG 1
+#endif
+#ifndef EW_WITH_BLENDS
+#define EW_WITH_BLENDS 1
+#endif
+#ifndef EW_WITH_CUTOUTS
+#define EW_WITH_CUTOUTS 1
+#endif
+#ifndef EW_WITH_BILINEAR
+#define EW_WITH_BILINEAR 1
+#endif
+#ifndef EW_WITH_MIPS
+#define EW_WITH_MIPS 1
+#endif
+#ifndef EW_WITH_WRAPS
+#define EW_WITH_WRAPS 1
+#endif
+#ifndef EW_WITH_TEXTURE_FORMATS
+#define EW_WITH_TEXTURE_FORMATS 1
+#endif
+#ifndef EW_WITH_TARGET_FORMATS
+#define EW_WITH_TARGET_FORMATS 1
+#endif
+#ifndef EW_WITH_DITHER
+#define EW_WITH_DITHER 1
+#endif
+#if (EW_WITH_SHADING != 0 && EW_WITH_SHADING != 1) || (EW_WITH_FOG != 0 && EW_WITH_FOG != 1) || \
+    (EW_WITH_BLENDS != 0 && EW_WITH_BLENDS != 1) || (EW_WITH_CUTOUTS != 0 && EW_WITH_CUTOUTS != 1) || \
+    (EW_WITH_BILINEAR != 0 && EW_WITH_BILINEAR != 1) || (EW_WITH_MIPS != 0 && EW_WITH_MIPS != 1) || \
+    (EW_WITH_WRAPS != 0 && EW_WITH_WRAPS != 1) || (EW_WITH_TEXTURE_FORMATS != 0 && EW_WITH_TEXTURE_FORMATS != 1) || \
+    (EW_WITH_TARGET_FORMATS != 0 && EW_WITH_TARGET_FORMATS != 1) || (EW_WITH_DITHER != 0 && EW_WITH_DITHER != 1)
+#error "EW_WITH_...: 0 or 1"
+#endif
+
 /* Check of what a caller promised (a NULL that must not be one, a size out of its
  * stated range). Compiled away by default; a host build sets it to assert(). Bad
  * data - a file, a stream - is never checked with it. */

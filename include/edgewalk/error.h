@@ -12,7 +12,8 @@ typedef enum ew_error {
     EW_ERR_TRUNCATED = -5, /* the data ends before its own lengths say            */
     EW_ERR_CHECKSUM = -6,  /* the data was changed after it was written           */
     EW_ERR_CORRUPT = -7,   /* an offset, an index or a count points outside       */
-    EW_ERR_ROOM = -8       /* the caller's memory is smaller than the stated need */
+    EW_ERR_ROOM = -8,      /* the caller's memory is smaller than the stated need */
+    EW_ERR_UNSUPPORTED = -9 /* a feature that this build leaves out (config.h)    */
 } ew_error;
 
 /* A phrase for a code, lower case, without a full stop; never NULL. */

@@ -1,4 +1,4 @@
-/* edgewalk/raster.h - triangles into a caller's RGB565 and depth memory.
+/* edgewalk/raster.h - triangles into a caller's colour and depth memory.
  *
  * Conventions (all of them, with their reasons, in docs/conventions.md):
  *   - x grows to the right, y downwards; the centre of pixel (i, j) is (i + 1/2, j + 1/2).
@@ -9,7 +9,10 @@
  *     (x1 - x0)(y2 - y0) - (x2 - x0)(y1 - y0) is negative. Zero area covers nothing.
  *   - Depth is clamp(floor(65536 near/z), 1, 65535): larger is nearer, 0 is the cleared
  *     buffer, and a fragment wins if it is strictly greater.
- *   - Texel i covers [i, i + 1); nearest is floor(u). Textures repeat.
+ *   - Texel i covers [i, i + 1); nearest is floor(u). Centres are at i + 1/2.
+ *
+ * What every fill makes of a pixel, to the bit: docs/fills.md. A part of them that
+ * config.h left out is refused with EW_ERR_UNSUPPORTED.
  */
 #ifndef EW_RASTER_H
 #define EW_RASTER_H
@@ -23,16 +26,32 @@
 enum {
     EW_TARGET_MAX = 4096,   /* pixels across and down                                      */
     EW_TEXTURE_MAX = 2048,  /* texels across and down                                      */
+    EW_LEVELS_MAX = 12,     /* of a mip chain: 2048 to 1                                   */
     EW_TOLERANCE_MAX = 256  /* 16 px                                                       */
 };
 /* Screen positions: |x|, |y| <= 2^17 px. Not an enumerator: int may have 16 bits. */
 #define EW_GUARD_PX INT32_C(131072)
 
+/* How a target keeps a pixel. Of the packed ones, the left pixel is in a byte's high bits. */
+typedef enum ew_target_format {
+    EW_TARGET_RGB565 = 0,  /* uint16_t in the machine's byte order                        */
+    EW_TARGET_RGB565_SWAPPED, /* the same with the bytes exchanged                         */
+    EW_TARGET_RGB332,      /* a byte each                                                 */
+    EW_TARGET_GREY8,
+    EW_TARGET_GREY4,       /* two to a byte                                               */
+    EW_TARGET_MONO         /* eight to a byte, 1 is white                                 */
+} ew_target_format;
+
 typedef struct ew_target {
-    uint16_t *colour; /* RGB565                                                           */
+    void *colour;     /* rows of `stride` pixels; 16-bit formats are aligned to 2         */
     uint16_t *depth;  /* the same shape, or NULL: no depth test and no depth written      */
     uint16_t width, height; /* 1 to 4096                                                  */
-    uint16_t stride;  /* elements from one row to the next, of both; at least width       */
+    uint16_t stride;  /* pixels from one row to the next, of both; at least width, and
+                         whole bytes: a multiple of 2 for EW_TARGET_GREY4, of 8 for _MONO */
+    uint8_t format;   /* ew_target_format                                                 */
+    uint8_t dither;   /* 1: ordered 8 x 8 dither, by position in the target               */
+    uint16_t dither_y; /* where a target that is a band begins in the whole picture, so
+                          that bands agree; any                                           */
 } ew_target;
 
 /* Pixels x0 <= x < x1, y0 <= y < y1. */
@@ -40,10 +59,52 @@ typedef struct ew_rect {
     uint16_t x0, y0, x1, y1;
 } ew_rect;
 
+/* How a texture keeps a texel. Of the packed ones, the left texel is in a byte's high bits,
+ * and a row begins with a new byte. */
+typedef enum ew_texture_format {
+    EW_TEXTURE_RGB565 = 0, /* uint16_t in the machine's byte order                        */
+    EW_TEXTURE_RGB332,     /* a byte each                                                 */
+    EW_TEXTURE_GREY8,
+    EW_TEXTURE_PALETTE8,   /* numbers of palette entries, a byte each                     */
+    EW_TEXTURE_PALETTE4,   /* two to a byte                                               */
+    EW_TEXTURE_PALETTE1    /* eight to a byte                                             */
+} ew_texture_format;
+
+/* What lies outside of [0, size), for u and v each. */
+typedef enum ew_wrap {
+    EW_WRAP_REPEAT = 0,
+    EW_WRAP_CLAMP,  /* the border's texel                                                 */
+    EW_WRAP_MIRROR  /* forth and back                                                     */
+} ew_wrap;
+
 typedef struct ew_texture {
-    const void *texels;     /* uint16_t RGB565, rows from the top, `width` to a row        */
-    uint16_t width, height; /* 1 to 2048, powers of two                                   */
+    const void *texels;     /* rows from the top, `width` to a row; level after level, each
+                               max(1, size >> level) wide and high; RGB565 aligned to 2   */
+    uint16_t width, height; /* of the first level, 1 to 2048                              */
+    const uint16_t *palette; /* RGB565: 256, 16 or 2 entries; for palette formats only    */
+    const uint8_t *mask;    /* with EW_ALPHA_MASK only: a bit per texel, 1 is drawn; rows and
+                               levels lie as those of EW_TEXTURE_PALETTE1                 */
+    uint16_t key;           /* with EW_COLOUR_KEY: the stored value that is left out       */
+    uint8_t format;         /* ew_texture_format                                          */
+    uint8_t wrap_u, wrap_v; /* ew_wrap                                                    */
+    uint8_t levels;         /* of the mip chain; 0 and 1: the texture alone. At most down to
+                               the level of 1 x 1                                         */
 } ew_texture;
+
+/* How a colour is taken from texels. With more levels than one, the level comes from the
+ * screen-space derivatives of u and v. */
+typedef enum ew_filter {
+    EW_FILTER_NEAREST = 0, /* the nearest texel of the nearest level                      */
+    EW_FILTER_BILINEAR,    /* four texels of the nearest level                             */
+    EW_FILTER_TRILINEAR    /* four texels of each of two neighbouring levels               */
+} ew_filter;
+
+/* What becomes of a colour and the one that stands in the target, per channel. */
+typedef enum ew_blend {
+    EW_BLEND_NONE = 0, /* the new one                                                     */
+    EW_BLEND_HALF,     /* half of both                                                    */
+    EW_BLEND_ADD       /* the sum, at most the channel's largest value                    */
+} ew_blend;
 
 /* How a triangle's u and v are found: the ladder. */
 typedef enum ew_rung {
@@ -62,7 +123,10 @@ enum {
     EW_DOUBLE_SIDED = 1,   /* do not cull back faces                                       */
     EW_NO_DEPTH_TEST = 2,  /* every fragment wins                                          */
     EW_NO_DEPTH_WRITE = 4,
-    EW_SHADED = 8          /* multiply by the corners' colours: not drawn yet, refused     */
+    EW_SHADED = 8,         /* texture or material colour, times the corners' colours       */
+    EW_COLOUR_KEY = 16,    /* leave out texels that equal texture->key: no colour, no depth */
+    EW_ALPHA_MASK = 32,    /* leave out texels whose bit in texture->mask is 0             */
+    EW_FOG = 64            /* towards the context's fog colour with distance               */
 };
 
 typedef struct ew_material {
@@ -71,7 +135,9 @@ typedef struct ew_material {
     uint16_t tolerance;        /* 1/16 px, 0 = exact, at most EW_TOLERANCE_MAX: how far from its
                                   pixel's centre an attribute may have been taken          */
     uint8_t rung;              /* ew_rung                                                  */
-    uint8_t flags;             /* EW_DOUBLE_SIDED ...                                      */
+    uint8_t flags;             /* EW_DOUBLE_SIDED ...; those of textures mean nothing without one */
+    uint8_t blend;             /* ew_blend                                                 */
+    uint8_t filter;            /* ew_filter                                                */
 } ew_material;
 
 /* A colour, or how much of each channel a light leaves: 255 is all of it. */
@@ -93,23 +159,36 @@ typedef struct ew_raster {
     ew_target target;
     ew_rect scissor;
     ew_material material;
-    ew_texture texture; /* copy of *material.texture                                       */
-    uint8_t log2_width, log2_height; /* of the texture                                     */
+    ew_texture texture; /* copy of *material.texture; texels are NULL and the size is 1 x 1 without */
+    uint32_t inverse_width, inverse_height; /* floor(2^32 / size); 0 for 1                 */
+    ew_uq1_31 fog_near, fog_far;
+    uint32_t fog_scale; /* ceil(2^31 / ((fog_near - fog_far) >> fog_shift))                */
+    uint16_t fog_colour;
+    uint8_t fog_shift;
+    uint8_t log2_width, log2_height; /* of the texture, rounded up                         */
+    uint8_t plain; /* 1: depth tested and written, RGB565 to RGB565, nearest, repeated, nothing else */
 } ew_raster;
 
-/* Copies *target; the scissor is the whole of it, the material black and constant. Returns
- * EW_OK or EW_ERR_ARGUMENT. */
+/* Copies *target; the scissor is the whole of it, the material black and constant, and
+ * there is no fog. Returns EW_OK, EW_ERR_ARGUMENT or EW_ERR_UNSUPPORTED. */
 int ew_raster_init(ew_raster *raster, const ew_target *target);
 
 /* Limits drawing and clearing to a rectangle, which may be empty. Returns EW_OK, or
  * EW_ERR_ARGUMENT for one that leaves the target or is inside out. */
 int ew_raster_set_scissor(ew_raster *raster, const ew_rect *rect);
 
-/* Copies *material and the texture's description, not its texels. Returns EW_OK or
- * EW_ERR_ARGUMENT. */
+/* Copies *material and the texture's description, not its texels, palette or mask. The
+ * constant rung takes no texture. Returns EW_OK, or EW_ERR_ARGUMENT or EW_ERR_UNSUPPORTED,
+ * and then the material is unchanged. */
 int ew_raster_set_material(ew_raster *raster, const ew_material *material);
 
-/* Fills the scissor rectangle with a colour and its depth with 0. */
+/* Fog for materials with EW_FOG: none at near/z >= w_near, nothing but `rgb565` at near/z <=
+ * w_far, linear in near/z between. Returns EW_OK, EW_ERR_ARGUMENT unless w_far < w_near <=
+ * 2^31, or EW_ERR_UNSUPPORTED. */
+int ew_raster_set_fog(ew_raster *raster, uint16_t rgb565, ew_uq1_31 w_near, ew_uq1_31 w_far);
+
+/* Fills the scissor rectangle with a colour, converted and dithered as drawn ones are, and
+ * its depth with 0. */
 void ew_raster_clear(ew_raster *raster, uint16_t rgb565);
 
 /* Draws one triangle. Corners are taken in order for orientation; their order changes
@@ -127,7 +206,8 @@ int ew_raster_triangle_in_range(ew_raster *raster, const ew_raster_vertex *a, co
 
 #if EW_TRACE
 /* For tests: what was set up, and every fragment before its depth test. u and v are modulo
- * the texture's size and meaningful with a texture only. Defined by whoever builds with EW_TRACE = 1. */
+ * the texture's period (twice its size where it is mirrored; clamped ones are whole) and
+ * meaningful with a texture only. Defined by whoever builds with EW_TRACE = 1. */
 void ew_trace_triangle(const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *c,
                        int rung);
 void ew_trace_fragment(uint16_t x, uint16_t y, uint16_t depth, ew_q20_12 u, ew_q20_12 v);

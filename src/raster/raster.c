@@ -1,16 +1,22 @@
-/* The raster context: target, scissor, material, clearing. */
+/* The raster context: target, scissor, material, fog, clearing. */
 #include "edgewalk/raster.h"
+
+#include "pixel.h"
+#include "target.h"
+#include "texture.h"
 
 int ew_raster_init(ew_raster *raster, const ew_target *target)
 {
-    if (!target->colour || target->width < 1 || target->width > EW_TARGET_MAX || target->height < 1 ||
-        target->height > EW_TARGET_MAX || target->stride < target->width) {
-        return EW_ERR_ARGUMENT;
-    }
+    int error = ew_target_check(target);
+    if (error) return error;
     raster->target = *target;
     raster->scissor.x0 = raster->scissor.y0 = 0;
     raster->scissor.x1 = target->width;
     raster->scissor.y1 = target->height;
+    /* a share of 0 whatever 1/z is */
+    raster->fog_near = raster->fog_far = raster->fog_scale = 0;
+    raster->fog_colour = 0;
+    raster->fog_shift = 0;
     ew_material black = { .rung = EW_RUNG_CONSTANT };
     return ew_raster_set_material(raster, &black);
 }
@@ -25,40 +31,97 @@ int ew_raster_set_scissor(ew_raster *raster, const ew_rect *rect)
     return EW_OK;
 }
 
-static int is_texture_size(uint32_t size) { return size >= 1 && size <= EW_TEXTURE_MAX && !(size & (size - 1)); }
+/* ---- material ---- */
 
-int ew_raster_set_material(ew_raster *raster, const ew_material *material)
+enum { KNOWN_FLAGS = EW_DOUBLE_SIDED | EW_NO_DEPTH_TEST | EW_NO_DEPTH_WRITE | EW_SHADED | EW_COLOUR_KEY | EW_ALPHA_MASK | EW_FOG };
+
+static int check_material(const ew_material *m)
 {
-    const ew_texture *texture = material->texture;
-    if (material->rung >= EW_RUNG_COUNT || material->tolerance > EW_TOLERANCE_MAX ||
-        (material->flags & ~(EW_DOUBLE_SIDED | EW_NO_DEPTH_TEST | EW_NO_DEPTH_WRITE)) ||
-        (texture && (!texture->texels || !is_texture_size(texture->width) || !is_texture_size(texture->height)))) {
+    if (m->rung >= EW_RUNG_COUNT || m->tolerance > EW_TOLERANCE_MAX || (m->flags & ~KNOWN_FLAGS) ||
+        m->blend > EW_BLEND_ADD || m->filter > EW_FILTER_TRILINEAR) {
         return EW_ERR_ARGUMENT;
     }
-    raster->material = *material;
-    if (material->rung == EW_RUNG_CONSTANT) texture = NULL; /* one colour, whatever else is there */
-    if (texture) {
-        raster->texture = *texture;
-        raster->log2_width = (uint8_t)(31 - ew_clz32(texture->width));
-        raster->log2_height = (uint8_t)(31 - ew_clz32(texture->height));
-        raster->material.texture = &raster->texture;
-    } else {
-        raster->material.texture = NULL;
-        raster->texture.texels = NULL;
-        raster->texture.width = raster->texture.height = 1;
-        raster->log2_width = raster->log2_height = 0;
+    int error = m->texture ? ew_texture_check(m->texture, m->filter, m->flags) : EW_OK;
+    if (error) return error;
+    if ((!EW_WITH_SHADING && (m->flags & EW_SHADED)) || (!EW_WITH_FOG && (m->flags & EW_FOG)) ||
+        (!EW_WITH_BLENDS && m->blend)) {
+        return EW_ERR_UNSUPPORTED;
     }
     return EW_OK;
 }
 
+/* What span.c's loop for textures knows: RGB565 as it is stored, from one power of two by
+ * another, at most 2^16 texels, to a target with depth. Dither changes nothing that comes
+ * from as many bits. */
+static int is_plain(const ew_raster *raster)
+{
+    const ew_target *target = &raster->target;
+    const ew_texture *t = &raster->texture;
+    return t->texels && t->format == EW_TEXTURE_RGB565 && !t->wrap_u && !t->wrap_v && t->levels <= 1 &&
+           !(t->width & (t->width - 1u)) && !(t->height & (t->height - 1u)) && raster->log2_width >= 1 &&
+           raster->log2_height >= 1 && raster->log2_width + raster->log2_height <= 16 &&
+           raster->material.filter == EW_FILTER_NEAREST && !raster->material.blend &&
+           !(raster->material.flags & ~EW_DOUBLE_SIDED) && target->depth && target->format == EW_TARGET_RGB565;
+}
+
+/* Rounded up. */
+static uint8_t log2_of(uint32_t size) { return (uint8_t)(32 - ew_clz32(size - 1u)); }
+
+int ew_raster_set_material(ew_raster *raster, const ew_material *material)
+{
+    int error = check_material(material);
+    if (error) return error;
+    const ew_texture *texture = material->rung == EW_RUNG_CONSTANT ? NULL : material->texture;
+    const ew_texture none = { .width = 1, .height = 1 };
+    raster->texture = texture ? *texture : none;
+    raster->material = *material;
+    raster->material.texture = texture ? &raster->texture : NULL;
+    raster->inverse_width = ew_texture_inverse(raster->texture.width);
+    raster->inverse_height = ew_texture_inverse(raster->texture.height);
+    raster->log2_width = log2_of(raster->texture.width);
+    raster->log2_height = log2_of(raster->texture.height);
+    raster->plain = (uint8_t)is_plain(raster);
+    return EW_OK;
+}
+
+/* ---- fog ---- */
+
+int ew_raster_set_fog(ew_raster *raster, uint16_t rgb565, ew_uq1_31 w_near, ew_uq1_31 w_far)
+{
+    if (w_near <= w_far || w_near > 0x80000000u) return EW_ERR_ARGUMENT;
+    if (!EW_WITH_FOG) return EW_ERR_UNSUPPORTED;
+    const uint32_t range = w_near - w_far;
+    const int bits = 32 - ew_clz32(range);
+    raster->fog_colour = rgb565;
+    raster->fog_near = w_near;
+    raster->fog_far = w_far;
+    raster->fog_shift = (uint8_t)(bits > 16 ? bits - 16 : 0);
+    const uint32_t steps = range >> raster->fog_shift; /* 1 to 2^16 - 1 */
+    raster->fog_scale = (0x7FFFFFFFu + steps) / steps;
+    return EW_OK;
+}
+
+/* ---- clear ---- */
+
 void ew_raster_clear(ew_raster *raster, uint16_t rgb565)
 {
     const ew_rect *r = &raster->scissor;
+    const ew_target *target = &raster->target;
+    const int as_it_is = target->format == EW_TARGET_RGB565 && !target->dither;
+    ew_piece piece;
+    piece.live = 0xFF;
+    for (int i = 0; i < EW_PIECE; i++) ew_decode_565(piece.colour[i], rgb565, ew_wide(target));
     for (uint16_t y = r->y0; y < r->y1; y++) {
-        size_t row = (size_t)y * raster->target.stride;
+        const size_t row = (size_t)y * target->stride;
+        piece.y = y;
+        for (uint16_t x = r->x0; x < r->x1 && !as_it_is; x = (uint16_t)(x + piece.n)) {
+            piece.x = x;
+            piece.n = r->x1 - x < EW_PIECE ? r->x1 - x : EW_PIECE;
+            ew_target_put(target, &piece, EW_BLEND_NONE);
+        }
         for (uint16_t x = r->x0; x < r->x1; x++) {
-            raster->target.colour[row + x] = rgb565;
-            if (raster->target.depth) raster->target.depth[row + x] = 0;
+            if (as_it_is) ((uint16_t *)target->colour)[row + x] = rgb565;
+            if (target->depth) target->depth[row + x] = 0;
         }
     }
 }

@@ -258,13 +258,9 @@ static int32_t attribute(int32_t d, uint32_t w, int bits, int affine)
     return EW_ASR(ew_mulh_s32(d * ((int32_t)1 << (31 - bits)), (int32_t)w), 2); /* d w' 2^(31 - bits - 32 - 2) */
 }
 
-static uint8_t plainness(const ew_raster *raster, const ew_triangle *t, uint32_t w_min, uint32_t w_max)
+static uint8_t plainness(const ew_raster *raster, uint32_t w_min, uint32_t w_max)
 {
-    if (!raster->target.depth || (raster->material.flags & (EW_NO_DEPTH_TEST | EW_NO_DEPTH_WRITE)) ||
-        !raster->texture.texels || t->attributes > 2 ||
-        raster->log2_width < 1 || raster->log2_height < 1 || raster->log2_width + raster->log2_height > 16) {
-        return PLAIN_NEVER;
-    }
+    if (!raster->plain) return PLAIN_NEVER;
     /* what lies outside of the corners (stays_near), and steps' rounding */
     return w_min >= 65536u && w_max <= 0x50000000u ? PLAIN_ALWAYS : PLAIN_SOMETIMES;
 }
@@ -330,7 +326,7 @@ int ew_setup(ew_triangle *t, const ew_raster *raster, const ew_corners *c)
     for (int k = 0; k < 2; k++) of.d[EW_PLANE_U][k] = of.d[EW_PLANE_V][k] = 0;
     if (has_texture) textured(t, &of, raster, c, w, affine);
     if (has_shades) shaded(t, &of, c, w, affine);
-    t->plain = plainness(raster, t, w_min, w_max);
+    t->plain = plainness(raster, w_min, w_max);
     if (t->rung == EW_RUNG_CONSTANT) t->attributes = 0; /* corner 0's are taken everywhere */
 
     int32_t x[3], y[3];

@@ -287,7 +287,7 @@ static void fill_any(const ew_raster *raster, const ew_triangle *t, position *at
     ew_run run;
     run.x = at->x, run.y = at->y;
     run.w = at->w, run.dw = at->dw;
-    run.u = run.v = run.du = run.dv = 0;
+    run.u = run.v = run.du = run.dv = run.u_down = run.v_down = 0;
     if (raster->texture.texels) {
         int up = 32 - EW_FRACTION(t->uv_bits);
         run.u = ((uint64_t)(int64_t)t->u_origin << 20) + ((uint64_t)(int64_t)(int32_t)from->u << up);
@@ -323,7 +323,10 @@ EW_NOINLINE void piece_of_any(const ew_raster *raster, const ew_triangle *t, pos
     attribute_run run;
     if (t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_CONSTANT) {
         run.u = l->u, run.du = l->du, run.v = l->v, run.dv = l->dv;
-        for (int i = 0; i < 3; i++) run.shade[i] = l->shade[i], run.dshade[i] = l->dshade[i];
+        for (int i = 0; i < 3; i++) {
+            run.shade[i] = t->attributes > 2 ? l->shade[i] : 0;
+            run.dshade[i] = t->attributes > 2 ? l->dshade[i] : 0;
+        }
         fill_any(raster, t, at, &run, n);
         return;
     }
@@ -362,7 +365,7 @@ EW_ALWAYS_INLINE void piece(const ew_raster *raster, const ew_triangle *t, linea
         packing k;
         packing_init(&k, raster, t);
         packing_depth(&k, l, t->w_lead);
-        k.colour = raster->target.colour + offset;
+        k.colour = (uint16_t *)raster->target.colour + offset;
         k.depth = raster->target.depth + offset;
 #if EW_TRACE
         k.x = (uint16_t)x, k.y = (uint16_t)y;
@@ -503,7 +506,7 @@ EW_NOINLINE int rows_of_texture(const ew_raster *raster, ew_triangle *t, ew_edge
     const int32_t clip_left = raster->scissor.x0, clip_right = raster->scissor.x1;
     const int wide = t->is_wide, affine = t->rung == EW_RUNG_AFFINE;
     const size_t offset = (size_t)row * raster->target.stride;
-    uint16_t *colour = raster->target.colour + offset, *depth = raster->target.depth + offset;
+    uint16_t *colour = (uint16_t *)raster->target.colour + offset, *depth = raster->target.depth + offset;
     ew_edge l = *left, r = *right; /* or they would be read and written around each span */
     int reached = 0;
     linear s;
@@ -519,7 +522,7 @@ EW_NOINLINE int rows_of_texture(const ew_raster *raster, ew_triangle *t, ew_edge
 #endif
             int whole = wide ? wide_start(&s, t, x, n) : narrow_start(&s, t, x);
             packing_depth(&k, &s, t->w_lead);
-            if (!whole) span_of_wide(raster, t, x, row, (size_t)(k.colour - raster->target.colour), n);
+            if (!whole) span_of_wide(raster, t, x, row, (size_t)(k.colour - (uint16_t *)raster->target.colour), n);
             else if (affine) fill_textured(&k, s.u, s.du, s.v, s.dv, n);
             else if (one_run_suffices(t, s.w, s.dw, n)) run_of_texture(&k, &s, (uint32_t)n >> 1, n);
             else piece_of_texture(&k, t, &s, n);

@@ -321,12 +321,14 @@ void ew_scene_get_primitive(const ew_scene *scene, uint32_t i, ew_scene_primitiv
 void ew_scene_get_material(const ew_scene *scene, uint32_t i, ew_material *material, ew_texture *texture)
 {
     const uint8_t *p = record(scene, EW_SECTION_MATL, i);
+    const ew_material plain = { .rung = EW_RUNG_AUTO };
+    const ew_texture repeated = { .texels = NULL };
     uint16_t number = u16_at(p + 2);
+    *material = plain;
+    *texture = repeated;
     material->colour = u16_at(p);
     material->flags = u16_at(p + 4) & 1 ? EW_DOUBLE_SIDED : 0;
     material->tolerance = u16_at(p + 6);
-    material->rung = EW_RUNG_AUTO;
-    material->texture = NULL;
     if (number == 0xFFFF) return;
     const uint8_t *t = record(scene, EW_SECTION_TEXR, number);
     texture->texels = (const void *)record(scene, EW_SECTION_TEXL, u32_at(t));

@@ -1,0 +1,124 @@
+/* Targets: a colour of three 12-bit channels becomes a pixel. docs/fills.md has the formulas. */
+#include "target.h"
+
+#include "pixel.h"
+
+/* A pixel is `channels` channels, the first one highest. */
+typedef struct layout {
+    uint8_t channels;  /* 3, or 1: grey                                                   */
+    uint8_t bits[3];
+    uint8_t log2_bits; /* of a pixel                                                      */
+} layout;
+
+static const layout layouts[] = {
+    { 3, { 5, 6, 5 }, 4 },
+#if EW_WITH_TARGET_FORMATS
+    { 3, { 5, 6, 5 }, 4 }, /* swapped                                                     */
+    { 3, { 3, 3, 2 }, 3 },
+    { 1, { 8, 0, 0 }, 3 },
+    { 1, { 4, 0, 0 }, 2 },
+    { 1, { 1, 0, 0 }, 0 },
+#endif
+};
+
+int ew_target_check(const ew_target *target)
+{
+    if (!target->colour || target->width < 1 || target->width > EW_TARGET_MAX || target->height < 1 ||
+        target->height > EW_TARGET_MAX || target->stride < target->width || target->dither > 1 ||
+        target->format > EW_TARGET_MONO || ((uintptr_t)target->depth & 1u)) {
+        return EW_ERR_ARGUMENT;
+    }
+    if (target->format >= sizeof layouts / sizeof *layouts || (!EW_WITH_DITHER && target->dither)) {
+        return EW_ERR_UNSUPPORTED;
+    }
+    int log2_bits = layouts[target->format].log2_bits;
+    int whole = log2_bits == 4 ? !((uintptr_t)target->colour & 1u) : !(target->stride & ew_packed_low(log2_bits));
+    return whole ? EW_OK : EW_ERR_ARGUMENT;
+}
+
+/* ---- dither ---- */
+
+#if EW_WITH_DITHER
+/* The 8 x 8 matrix of B. E. Bayer, "An optimum method for two-level rendition of
+ * continuous-tone pictures", 1973: bits of y and of x ^ y in turn, the lowest ones highest. */
+static const uint8_t bayer[8][8] = {
+    { 0, 32, 8, 40, 2, 34, 10, 42 },  { 48, 16, 56, 24, 50, 18, 58, 26 }, { 12, 44, 4, 36, 14, 46, 6, 38 },
+    { 60, 28, 52, 20, 62, 30, 54, 22 }, { 3, 35, 11, 43, 1, 33, 9, 41 }, { 51, 19, 59, 27, 49, 17, 57, 25 },
+    { 15, 47, 7, 39, 13, 45, 5, 37 }, { 63, 31, 55, 23, 61, 29, 53, 21 },
+};
+#endif
+
+/* 12 bits to `bits`; threshold is 0 to 63, or negative: no dither. */
+static uint32_t reduce(uint32_t c, int bits, int threshold)
+{
+    if (!EW_WITH_DITHER || threshold < 0) return c >> (12 - bits);
+    /* what was c (2^bits - 1) / 2^12 of a step is now whole steps of 2^(12 - bits) */
+    uint32_t t = bits <= 6 ? (uint32_t)threshold << (6 - bits) : (uint32_t)threshold >> (bits - 6);
+    return (c - (c >> bits) + t) >> (12 - bits);
+}
+
+/* ---- blend ---- */
+
+/* `up` rounds the half upwards. */
+static uint32_t mixed(uint32_t value, uint32_t old, int bits, int blend, uint32_t up)
+{
+    uint32_t top = ((uint32_t)1 << bits) - 1u, sum = value + old;
+    if (blend == EW_BLEND_HALF) return (sum + up) >> 1;
+    return sum > top ? top : sum;
+}
+
+/* ---- pixels ---- */
+
+static uint32_t swapped(uint32_t p) { return (p >> 8 & 0xFFu) | (p & 0xFFu) << 8; }
+
+static uint32_t read_pixel(const ew_target *target, const uint8_t *row, uint32_t x, int log2_bits)
+{
+    if (!EW_WITH_TARGET_FORMATS || log2_bits == 4) {
+        uint32_t p = ((const uint16_t *)(const void *)row)[x];
+        return EW_WITH_TARGET_FORMATS && target->format == EW_TARGET_RGB565_SWAPPED ? swapped(p) : p;
+    }
+    return ew_packed_get(row, x, log2_bits);
+}
+
+static void write_pixel(const ew_target *target, uint8_t *row, uint32_t x, int log2_bits, uint32_t p)
+{
+    if (!EW_WITH_TARGET_FORMATS || log2_bits == 4) {
+        int swap = EW_WITH_TARGET_FORMATS && target->format == EW_TARGET_RGB565_SWAPPED;
+        ((uint16_t *)(void *)row)[x] = (uint16_t)(swap ? swapped(p) : p);
+    } else {
+        ew_packed_set(row, x, log2_bits, p);
+    }
+}
+
+void ew_target_put(const ew_target *target, const ew_piece *piece, int blend)
+{
+    const layout *form = &layouts[EW_WITH_TARGET_FORMATS ? target->format : 0];
+    const int log2_bits = form->log2_bits;
+    /* whole bytes: a stride of packed pixels is a multiple of what a byte holds */
+    uint8_t *row = (uint8_t *)target->colour + (((size_t)piece->y * target->stride) << log2_bits >> 3);
+    const int dither = EW_WITH_DITHER && target->dither;
+    const uint32_t band_y = (uint32_t)piece->y + target->dither_y;
+    for (int i = 0; i < piece->n; i++) {
+        if (!(piece->live >> i & 1)) continue;
+        const uint32_t x = (uint32_t)piece->x + (uint32_t)i;
+        const uint32_t old = EW_WITH_BLENDS && blend ? read_pixel(target, row, x, log2_bits) : 0;
+        int threshold = -1;
+#if EW_WITH_DITHER
+        if (dither) threshold = bayer[band_y & 7u][x & 7u];
+#endif
+        uint32_t pixel = 0;
+        int below = 1 << log2_bits; /* bits of the channels still to come */
+        for (int k = 0; k < form->channels; k++) {
+            const int bits = form->bits[k];
+            uint32_t c = form->channels == 1 ? ew_grey_of(piece->colour[i]) : piece->colour[i][k];
+            uint32_t value = reduce(c, bits, threshold);
+            below -= bits;
+            if (EW_WITH_BLENDS && blend) {
+                uint32_t before = old >> below & (((uint32_t)1 << bits) - 1u);
+                value = mixed(value, before, bits, blend, dither ? (x ^ band_y) & 1u : 0);
+            }
+            pixel |= value << below;
+        }
+        write_pixel(target, row, x, log2_bits, pixel);
+    }
+}

@@ -1,0 +1,13 @@
+/* Colours into a target (private to the raster layer). */
+#ifndef EW_RASTER_TARGET_H
+#define EW_RASTER_TARGET_H
+
+#include "fill.h"
+
+/* Whether the core can draw into it: EW_OK, EW_ERR_ARGUMENT or EW_ERR_UNSUPPORTED. */
+int ew_target_check(const ew_target *target);
+
+/* Converts, dithers, blends and stores the live pixels of a piece. */
+void ew_target_put(const ew_target *target, const ew_piece *piece, int blend);
+
+#endif

@@ -1,0 +1,321 @@
+/* Textures: wraps, mip levels, filters, formats. docs/fills.md has the formulas.
+ *
+ * Along each axis a position is kept inside one period of the texture - its size, twice
+ * that where it is mirrored - and so is its step: a sum is then brought back by one
+ * comparison, whatever the size. A clamped position has no period and stays what it is.
+ */
+#include "texture.h"
+
+#include "pixel.h"
+
+/* ---- checks ---- */
+
+static uint8_t log2_bits_of(int format)
+{
+    static const uint8_t log2_bits[] = { 4, 3, 3, 3, 2, 0 };
+    return EW_WITH_TEXTURE_FORMATS ? log2_bits[format] : 4;
+}
+
+static int is_power_of_two(uint32_t n) { return !(n & (n - 1u)); }
+
+static int is_size(uint32_t size) { return size >= 1 && size <= EW_TEXTURE_MAX; }
+
+int ew_texture_check(const ew_texture *t, int filter, int flags)
+{
+    if (!t->texels || !is_size(t->width) || !is_size(t->height) || t->format > EW_TEXTURE_PALETTE1 ||
+        t->wrap_u > EW_WRAP_MIRROR || t->wrap_v > EW_WRAP_MIRROR ||
+        t->levels > 32 - ew_clz32((uint32_t)t->width | t->height) ||
+        (t->format >= EW_TEXTURE_PALETTE8 && (!t->palette || ((uintptr_t)t->palette & 1u))) ||
+        (t->format == EW_TEXTURE_RGB565 && ((uintptr_t)t->texels & 1u)) || ((flags & EW_ALPHA_MASK) && !t->mask)) {
+        return EW_ERR_ARGUMENT;
+    }
+    if ((!EW_WITH_TEXTURE_FORMATS && t->format) || (!EW_WITH_MIPS && t->levels > 1) ||
+        (!EW_WITH_WRAPS && (t->wrap_u || t->wrap_v || !is_power_of_two(t->width) || !is_power_of_two(t->height))) ||
+        (!EW_WITH_BILINEAR && filter) || (!EW_WITH_MIPS && filter == EW_FILTER_TRILINEAR) ||
+        (!EW_WITH_CUTOUTS && (flags & (EW_COLOUR_KEY | EW_ALPHA_MASK)))) {
+        return EW_ERR_UNSUPPORTED;
+    }
+    return EW_OK;
+}
+
+uint32_t ew_texture_inverse(uint32_t size)
+{
+    if (!EW_WITH_WRAPS && !EW_WITH_MIPS) return 0;
+    return 0xFFFFFFFFu / size + (is_power_of_two(size) ? 1u : 0u); /* 2^32 becomes 0 */
+}
+
+/* ---- positions ---- */
+
+/* Texels of one axis before they come again. */
+static uint32_t period_of(uint32_t size, int wrap)
+{
+    return EW_WITH_WRAPS && wrap == EW_WRAP_MIRROR ? 2u * size : size;
+}
+
+/* The whole part of u modulo the period, the fraction as it is. */
+static uint64_t within_period(uint64_t u, uint32_t size, int wrap, uint32_t inverse)
+{
+    const uint32_t period = period_of(size, wrap);
+    uint32_t whole = (uint32_t)(u >> 32), r;
+    if (!EW_WITH_WRAPS || is_power_of_two(period)) {
+        r = whole & (period - 1u);
+    } else {
+        /* with a < 2^31, a times floor(2^32 / period) / 2^32 is a / period or less than 1 below:
+         * the quotient is right or one too small. -1 - a comes to period - 1 - (a mod period). */
+        const int negative = (int32_t)whole < 0;
+        const uint32_t a = negative ? ~whole : whole;
+        r = a - ew_mulh_u32(a, wrap == EW_WRAP_MIRROR ? inverse >> 1 : inverse) * period;
+        if (r >= period) r -= period;
+        if (negative) r = period - 1u - r;
+    }
+    return (uint64_t)r << 32 | (uint32_t)(u & 0xFFFFFFFFu);
+}
+
+/* floor(u ratio / 2^32), u as q32.32 with its sign. */
+static uint64_t scaled(uint64_t u, uint32_t ratio)
+{
+    uint32_t whole = (uint32_t)(u >> 32), fraction = (uint32_t)(u & 0xFFFFFFFFu);
+    uint32_t top = ew_mulh_u32(whole, ratio) - ((int32_t)whole < 0 ? ratio : 0u);
+    return ((uint64_t)top << 32 | whole * ratio) + ew_mulh_u32(fraction, ratio);
+}
+
+typedef struct axis {
+    uint64_t at, step; /* q32.32                                                           */
+    uint32_t period;   /* texels; 0: clamped                                               */
+    uint32_t size;     /* texels of the level                                              */
+} axis;
+
+/* u and du are texels of the first level. `back` is taken off the position, below one texel. */
+EW_APART void axis_start(axis *a, uint64_t u, uint64_t du, uint32_t size, uint32_t level, int wrap, uint32_t inverse,
+                         uint32_t back)
+{
+    const int clamped = EW_WITH_WRAPS && wrap == EW_WRAP_CLAMP;
+    a->size = EW_WITH_MIPS && level ? (size >> level ? size >> level : 1u) : size;
+    a->period = clamped ? 0 : period_of(a->size, wrap);
+    if (!clamped) {
+        const uint64_t whole = (uint64_t)period_of(size, wrap) << 32;
+        u = within_period(u, size, wrap, inverse);
+        du = within_period(du, size, wrap, inverse);
+        if (du > whole >> 1) du -= whole; /* the smaller step loses less when it is scaled */
+    }
+    if (EW_WITH_MIPS && a->size != size) {
+        u = scaled(u, a->size * inverse); /* inverse <= 2^31: the level is at most half as large */
+        du = scaled(du, a->size * inverse);
+    }
+    u -= back;
+    if (!clamped) {
+        if (u >> 63) u += (uint64_t)a->period << 32;
+        if (du >> 63) du += (uint64_t)a->period << 32;
+    }
+    a->at = u;
+    a->step = du;
+}
+
+/* With the sum below 2 periods. */
+static void axis_step(axis *a)
+{
+    a->at += a->step;
+    if (a->period && a->at >> 32 >= a->period) a->at -= (uint64_t)a->period << 32;
+}
+
+static uint32_t clamp(uint32_t i, uint32_t size)
+{
+    return (int32_t)i < 0 ? 0u : i >= size ? size - 1u : i;
+}
+
+/* The texel of the position, or the one `next` behind it, 0 or 1. */
+static uint32_t texel_index(const axis *a, uint32_t next)
+{
+    uint32_t i = (uint32_t)(a->at >> 32) + next;
+    if (EW_WITH_WRAPS && !a->period) return clamp(i, a->size);
+    if (i == a->period) i = 0;
+    return EW_WITH_WRAPS && i >= a->size ? a->period - 1u - i : i; /* above the size in a mirror only */
+}
+
+#if EW_TRACE
+ew_q20_12 ew_texture_traced(uint64_t u, uint32_t size, int wrap)
+{
+    if (wrap != EW_WRAP_CLAMP) u = within_period(u, size, wrap, ew_texture_inverse(size));
+    return (ew_q20_12)(uint32_t)(u >> 20 & 0xFFFFFFFFu);
+}
+#endif
+
+/* ---- levels ---- */
+
+#if EW_WITH_MIPS
+/* |step| in 2^-16 texel per pixel, below 2^31. */
+static uint32_t magnitude(uint64_t step)
+{
+    uint64_t a = (step >> 63 ? 0u - step : step) >> 16;
+    return a >> 31 ? 0x7FFFFFFFu : (uint32_t)a;
+}
+
+static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
+
+/* The logarithm of the larger of the lengths of (du/dx, dv/dx) and (du/dy, dv/dy), by
+ * OpenGL 2.1, 3.8.8: rho and lambda; half the logarithm of the length's square. */
+uint32_t ew_texture_level(const ew_run *run)
+{
+    uint32_t ux = magnitude(run->du), vx = magnitude(run->dv), uy = magnitude(run->u_down), vy = magnitude(run->v_down);
+    int shift = 17 - ew_clz32(larger(larger(ux, vx), larger(uy, vy)));
+    if (shift < 0) return 0; /* all below 2^14: rho < 2^-1.5 */
+    ux >>= shift, vx >>= shift, uy >>= shift, vy >>= shift;           /* < 2^15 */
+    uint32_t square = larger(ux * ux + vx * vx, uy * uy + vy * vy);   /* < 2^31, >= 2^26 */
+    int zeros = ew_clz32(square);
+    /* square = 2^(31 - zeros) (1 + x), and log2(1 + x) = x + 89/256 x (1 - x) within 0.0078 */
+    uint32_t x = (square << zeros << 1) >> 16;                        /* uq0.16 */
+    x += ((x * (65536u - x)) >> 16) * 89u >> 8;                       /* x (1 - x) <= 2^30 */
+    /* in 1/256; an exponent of 2 (16 - shift) stands for 1 texel */
+    int32_t level = (int32_t)(((uint32_t)(31 - zeros) << 16) + x + 256u) >> 9;
+    level += (int32_t)(shift - 16) * 256;
+    return level < 0 ? 0 : (uint32_t)level;
+}
+#endif
+
+/* A level as it lies in memory, and the position in it. */
+typedef struct sampler {
+    const ew_texture *texture;
+    const uint8_t *texels;
+    const uint8_t *mask; /* NULL: none                                                     */
+    axis u, v;
+    uint16_t row_bytes, mask_row_bytes; /* 4096 at most                                     */
+    uint8_t log2_bits; /* of a texel                                                      */
+    uint8_t wide;      /* of ew_decode_565                                                */
+} sampler;
+
+static uint32_t row_bytes_of(uint32_t width, int log2_bits) { return ((width << log2_bits) + 7u) >> 3; }
+
+static void find_level(sampler *s, uint32_t level)
+{
+    uint32_t width = s->texture->width, height = s->texture->height;
+    s->texels = s->texture->texels;
+    for (; EW_WITH_MIPS && level > 0; level--) {
+        s->texels += (size_t)row_bytes_of(width, s->log2_bits) * height;
+        if (s->mask) s->mask += (size_t)row_bytes_of(width, 0) * height;
+        width = width > 1 ? width >> 1 : 1;
+        height = height > 1 ? height >> 1 : 1;
+    }
+    s->row_bytes = (uint16_t)row_bytes_of(width, s->log2_bits);
+    s->mask_row_bytes = (uint16_t)row_bytes_of(width, 0);
+}
+
+/* ---- texels ---- */
+
+static uint32_t stored(const sampler *s, uint32_t column, uint32_t row)
+{
+    const uint8_t *line = s->texels + (size_t)row * s->row_bytes;
+    if (!EW_WITH_TEXTURE_FORMATS || s->log2_bits == 4) return ((const uint16_t *)(const void *)line)[column];
+    return ew_packed_get(line, column, s->log2_bits);
+}
+
+EW_APART void fetch(const sampler *s, uint32_t column, uint32_t row, uint16_t out[3])
+{
+    const ew_texture *t = s->texture;
+    uint32_t value = stored(s, column, row);
+    switch (EW_WITH_TEXTURE_FORMATS ? t->format : EW_TEXTURE_RGB565) {
+    case EW_TEXTURE_RGB565: break;
+    case EW_TEXTURE_RGB332: ew_decode_332(out, value); return;
+    case EW_TEXTURE_GREY8: ew_decode_grey(out, value); return;
+    default: value = t->palette[value]; break;
+    }
+    ew_decode_565(out, value, s->wide);
+}
+
+/* Whether a texel is left out. */
+EW_APART int is_cut(const sampler *s, int flags, uint32_t column, uint32_t row)
+{
+    if (s->mask && !ew_packed_get(s->mask + (size_t)row * s->mask_row_bytes, column, 0)) return 1;
+    return (flags & EW_COLOUR_KEY) && stored(s, column, row) == s->texture->key;
+}
+
+#if EW_WITH_BILINEAR
+/* The four texels around a position whose whole part is the upper left one, weighted in
+ * 1/32: fu and fv are five bits of the fraction. */
+EW_APART void fetch_four(const sampler *s, uint32_t fu, uint32_t fv, uint16_t out[3])
+{
+    const uint32_t both = (fu * fv + 16u) >> 5; /* the weights: none is below 0, their sum is 32 */
+    uint32_t sum[3] = { 0, 0, 0 };
+    for (uint32_t k = 0; k < 4; k++) {
+        const uint32_t weight = k == 0 ? 32u - fu - fv + both : k == 1 ? fu - both : k == 2 ? fv - both : both;
+        fetch(s, texel_index(&s->u, k & 1u), texel_index(&s->v, k >> 1), out);
+        for (int j = 0; j < 3; j++) sum[j] += weight * out[j]; /* <= 32 * 4095 */
+    }
+    for (int j = 0; j < 3; j++) out[j] = (uint16_t)(sum[j] >> 5);
+}
+#endif
+
+/* ---- pieces ---- */
+
+/* Bilinear positions begin at the upper left texel's centre; 1/64 texel rounds the weights. */
+#define HALF_TEXEL ((UINT32_C(1) << 31) - (UINT32_C(1) << 26))
+
+EW_APART void start(sampler *s, const ew_raster *raster, const ew_run *run, uint32_t level)
+{
+    const ew_texture *t = &raster->texture;
+    const uint32_t back = raster->material.filter != EW_FILTER_NEAREST ? HALF_TEXEL : 0;
+    s->texture = t;
+    s->mask = EW_WITH_CUTOUTS && (raster->material.flags & EW_ALPHA_MASK) ? t->mask : NULL;
+    s->log2_bits = log2_bits_of(t->format);
+    s->wide = ew_wide(&raster->target);
+    find_level(s, level);
+    axis_start(&s->u, run->u, run->du, t->width, level, t->wrap_u, raster->inverse_width, back);
+    axis_start(&s->v, run->v, run->dv, t->height, level, t->wrap_v, raster->inverse_height, back);
+}
+
+/* The colour at the sampler's position; 0 where the texel is left out. */
+EW_APART int sample(const sampler *s, int smooth, int flags, uint16_t out[3])
+{
+    const uint32_t fu = smooth ? (uint32_t)(s->u.at >> 27 & 31u) : 0, fv = smooth ? (uint32_t)(s->v.at >> 27 & 31u) : 0;
+    /* the nearest texel is the one with the larger weight */
+    const uint32_t column = texel_index(&s->u, fu >> 4), row = texel_index(&s->v, fv >> 4);
+    if (EW_WITH_CUTOUTS && flags && is_cut(s, flags, column, row)) return 0;
+#if EW_WITH_BILINEAR
+    if (fu | fv) {
+        fetch_four(s, fu, fv, out);
+        return 1;
+    }
+#endif
+    fetch(s, column, row, out);
+    return 1;
+}
+
+/* Colours of one level; they take the place of what the piece has by `share` / 256.
+ * `decides`: whether this level says which texels are left out. */
+EW_APART void sample_level(const ew_raster *raster, const ew_run *run, ew_piece *piece, uint32_t level, uint32_t share,
+                           int decides)
+{
+    const int smooth = EW_WITH_BILINEAR && raster->material.filter != EW_FILTER_NEAREST;
+    const int flags = decides ? raster->material.flags & (EW_COLOUR_KEY | EW_ALPHA_MASK) : 0;
+    sampler s;
+    start(&s, raster, run, level);
+    for (int i = 0; i < piece->n; i++, axis_step(&s.u), axis_step(&s.v)) {
+        uint16_t c[3];
+        if (!(piece->live >> i & 1)) continue;
+        if (!sample(&s, smooth, flags, c)) {
+            piece->live = (uint8_t)(piece->live & ~(1u << i));
+            continue;
+        }
+        for (int j = 0; j < 3; j++) {
+            if (EW_WITH_MIPS && share < 256) c[j] = ew_mix256(piece->colour[i][j], c[j], share);
+            piece->colour[i][j] = c[j];
+        }
+    }
+}
+
+void ew_texture_sample(const ew_raster *raster, const ew_run *run, ew_piece *piece)
+{
+#if EW_WITH_MIPS
+    const uint32_t last = raster->texture.levels > 1 ? raster->texture.levels - 1u : 0;
+    const uint32_t lambda = last ? ew_texture_level(run) : 0;
+    if (EW_WITH_BILINEAR && raster->material.filter == EW_FILTER_TRILINEAR && lambda < last << 8) {
+        const uint32_t share = lambda & 255u;
+        sample_level(raster, run, piece, lambda >> 8, 256, share < 128);
+        if (share) sample_level(raster, run, piece, (lambda >> 8) + 1u, share, share >= 128);
+        return;
+    }
+    const uint32_t level = (lambda + 128u) >> 8;
+    sample_level(raster, run, piece, level < last ? level : last, 256, 1);
+#else
+    sample_level(raster, run, piece, 0, 256, 1);
+#endif
+}

@@ -1,0 +1,22 @@
+/* Colours out of textures (private to the raster layer). */
+#ifndef EW_RASTER_TEXTURE_H
+#define EW_RASTER_TEXTURE_H
+
+#include "fill.h"
+
+/* Whether the core can draw it with a filter and flags: EW_OK, EW_ERR_ARGUMENT or
+ * EW_ERR_UNSUPPORTED. */
+int ew_texture_check(const ew_texture *texture, int filter, int flags);
+
+/* floor(2^32 / size); 0 for a size of 1. */
+uint32_t ew_texture_inverse(uint32_t size);
+
+/* The colours of a piece that begins at the run's first pixel. Pixels whose texel is left
+ * out are no longer live. */
+void ew_texture_sample(const ew_raster *raster, const ew_run *run, ew_piece *piece);
+
+/* log2 of the texels per pixel, in 1/256, at most 1/150 off; 0 where it is below 0. Steps are
+ * those of ew_run. */
+uint32_t ew_texture_level(const ew_run *run);
+
+#endif
