@@ -203,7 +203,7 @@ static uint8_t choose_rung(const ew_raster *raster, const ew_raster_vertex *cons
 {
     const ew_material *m = &raster->material;
     if (m->rung != EW_RUNG_AUTO) return m->rung;
-    if (m->tolerance > 0 && constant_suffices(v, m->tolerance)) return EW_RUNG_CONSTANT;
+    if (m->tolerance > 0 && raster->texture.levels <= 1 && constant_suffices(v, m->tolerance)) return EW_RUNG_CONSTANT;
     if (affine_suffices(v, m->tolerance, w_min)) return EW_RUNG_AFFINE;
     return m->tolerance > 0 ? EW_RUNG_RUNS : newton ? EW_RUNG_EXACT : EW_RUNG_TABLE;
 }
@@ -231,6 +231,7 @@ static void runs_init(ew_triangle *t, const ew_raster *raster)
     t->run_tolerance = t->rung == EW_RUNG_RUNS ? raster->material.tolerance : 0;
     /* a slope is off by at most half a unit: over the longest run by 1/128 texel */
     if (EW_FRACTION(t->uv_bits) < 15) t->longest = (uint16_t)(1u << (EW_FRACTION(t->uv_bits) - 6));
+    if (raster->texture.levels > 1) t->longest = 16; /* the level of a mip chain is a run's */
     if (t->rung == EW_RUNG_RUNS_8) t->longest = 8;
     if (t->rung == EW_RUNG_RUNS_16) t->longest = 16;
     if (t->rung == EW_RUNG_RUNS_32) t->longest = 32;

@@ -24,11 +24,14 @@ typedef struct linear {
 /* Attributes of a run's first pixel, with their fraction bits, and what they grow by. */
 typedef struct attribute_run {
     uint32_t u, du, v, dv;
+    uint32_t u_down, v_down; /* what they grow by to the next row, with mip chains only */
     uint32_t shade[3], dshade[3];
 } attribute_run;
 
 static int32_t larger(int32_t a, int32_t b) { return a > b ? a : b; }
 static int32_t smaller(int32_t a, int32_t b) { return a < b ? a : b; }
+
+static uint32_t top_of(uint64_t a, int up) { return (uint32_t)((a << up) >> 32); }
 
 /* ---- division by w' ---- */
 
@@ -282,36 +285,61 @@ typedef struct position {
     uint32_t w, dw;
 } position;
 
+static uint64_t texels_of(const ew_triangle *t, uint32_t a)
+{
+    return (uint64_t)(int64_t)(int32_t)a << (32 - EW_FRACTION(t->uv_bits));
+}
+
 static void fill_any(const ew_raster *raster, const ew_triangle *t, position *at, const attribute_run *from, int32_t n)
 {
     ew_run run;
     run.x = at->x, run.y = at->y;
     run.w = at->w, run.dw = at->dw;
-    run.u = run.v = run.du = run.dv = run.u_down = run.v_down = 0;
-    if (raster->texture.texels) {
-        int up = 32 - EW_FRACTION(t->uv_bits);
-        run.u = ((uint64_t)(int64_t)t->u_origin << 20) + ((uint64_t)(int64_t)(int32_t)from->u << up);
-        run.v = ((uint64_t)(int64_t)t->v_origin << 20) + ((uint64_t)(int64_t)(int32_t)from->v << up);
-        run.du = (uint64_t)(int64_t)(int32_t)from->du << up;
-        run.dv = (uint64_t)(int64_t)(int32_t)from->dv << up;
-    }
-    if (raster->material.flags & EW_SHADED) shade_run(&run, t, from, n);
+    run.u = ((uint64_t)(int64_t)t->u_origin << 20) + texels_of(t, from->u);
+    run.v = ((uint64_t)(int64_t)t->v_origin << 20) + texels_of(t, from->v);
+    run.du = texels_of(t, from->du), run.dv = texels_of(t, from->dv);
+    run.u_down = texels_of(t, from->u_down), run.v_down = texels_of(t, from->v_down);
+    if (EW_WITH_SHADING && raster->material.flags & EW_SHADED) shade_run(&run, t, from, n);
     ew_fill_any(raster, &run, n);
     at->x = (uint16_t)(at->x + n);
     at->w += at->dw * (uint32_t)n;
 }
 
-/* A run of m pixels as the tangent at pixel `half`; the slopes are those of its middle. */
-static void run_of_any(attribute_run *run, const ew_raster *raster, const linear *l, int newton, uint32_t half)
+/* A plane's growth to the next row, as `linear` has that to the next pixel. */
+static uint32_t down_of(const ew_triangle *t, int plane, int align)
 {
-    divisor d = divisor_of(l->w + l->dw * half, newton);
+    return t->is_wide ? top_of(t->plane.wide[plane].dy, align) : t->plane.narrow[plane].dy;
+}
+
+/* A slope where it may be any: held to 2^29 units, four times the triangle's whole range. */
+static uint32_t steep_slope(uint32_t a, uint32_t da, uint32_t dw, divisor d)
+{
+    int32_t most = 0x3FFFFFFF >> d.zeros, turned = (int32_t)(da - (uint32_t)ew_mulh_s32((int32_t)(a << 2), (int32_t)dw));
+    return over_w((uint32_t)larger(-most, smaller(turned, most)), d);
+}
+
+/* Slopes across and down of mip chains at a pixel: their level depends on all four. */
+static void mip_slopes(attribute_run *run, const ew_triangle *t, const linear *l, uint32_t u, uint32_t v, divisor d)
+{
+    uint32_t dw = down_of(t, EW_PLANE_W, l->align);
+    run->du = steep_slope(u, l->du, l->dw, d);
+    run->dv = steep_slope(v, l->dv, l->dw, d);
+    run->u_down = steep_slope(u, down_of(t, EW_PLANE_U, l->align), dw, d);
+    run->v_down = steep_slope(v, down_of(t, EW_PLANE_V, l->align), dw, d);
+}
+
+/* A run as the tangent at its pixel `half`. */
+static void run_of_any(attribute_run *run, const ew_raster *raster, const ew_triangle *t, const linear *l, uint32_t half)
+{
+    divisor d = divisor_of(l->w + l->dw * half, t->newton);
     uint32_t u = over_w(l->u + l->du * half, d), v = over_w(l->v + l->dv * half, d);
+    run->u_down = run->v_down = 0;
     run->du = half ? slope(u, l->du, l->dw, d) : 0;
     run->dv = half ? slope(v, l->dv, l->dw, d) : 0;
+    if (EW_WITH_MIPS && raster->texture.levels > 1) mip_slopes(run, t, l, u, v, d);
     run->u = u - run->du * half;
     run->v = v - run->dv * half;
-    if (!(raster->material.flags & EW_SHADED)) return;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < t->attributes - 2; i++) {
         uint32_t s = over_w(l->shade[i] + l->dshade[i] * half, d);
         run->dshade[i] = half ? slope(s, l->dshade[i], l->dw, d) : 0;
         run->shade[i] = s - run->dshade[i] * half;
@@ -323,6 +351,8 @@ EW_NOINLINE void piece_of_any(const ew_raster *raster, const ew_triangle *t, pos
     attribute_run run;
     if (t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_CONSTANT) {
         run.u = l->u, run.du = l->du, run.v = l->v, run.dv = l->dv;
+        run.u_down = t->attributes ? down_of(t, EW_PLANE_U, 0) : 0;
+        run.v_down = t->attributes ? down_of(t, EW_PLANE_V, 0) : 0;
         for (int i = 0; i < 3; i++) {
             run.shade[i] = t->attributes > 2 ? l->shade[i] : 0;
             run.dshade[i] = t->attributes > 2 ? l->dshade[i] : 0;
@@ -330,16 +360,15 @@ EW_NOINLINE void piece_of_any(const ew_raster *raster, const ew_triangle *t, pos
         fill_any(raster, t, at, &run, n);
         return;
     }
+    const int per_pixel = t->rung == EW_RUNG_TABLE || t->rung == EW_RUNG_EXACT;
     while (n > 0) {
-        int32_t m = t->rung == EW_RUNG_TABLE || t->rung == EW_RUNG_EXACT ? 1 : (int32_t)run_length(t, l->w, l->dw, l->align);
+        int32_t m = per_pixel ? 1 : (int32_t)run_length(t, l->w, l->dw, l->align);
         m = larger(1, smaller(m, n));
-        run_of_any(&run, raster, l, t->newton, (uint32_t)m >> 1);
+        run_of_any(&run, raster, t, l, (uint32_t)m >> 1);
         fill_any(raster, t, at, &run, m);
         n -= m;
-        l->w += l->dw * (uint32_t)m;
-        l->u += l->du * (uint32_t)m;
-        l->v += l->dv * (uint32_t)m;
-        for (int i = 0; i < 3; i++) l->shade[i] += l->dshade[i] * (uint32_t)m;
+        advance(l, (uint32_t)m);
+        for (int i = 0; i < t->attributes - 2; i++) l->shade[i] += l->dshade[i] * (uint32_t)m;
     }
 }
 
@@ -414,8 +443,6 @@ static int alignment(uint64_t w, uint64_t end, uint32_t *least)
     *least = bottom > 0 ? (uint32_t)(((uint64_t)bottom << up) >> 32) : 0;
     return up;
 }
-
-static uint32_t top_of(uint64_t a, int up) { return (uint32_t)((a << up) >> 32); }
 
 /* Whether 32-bit steps keep attributes within 1/128 texel over n pixels: n 2^bits <= 4 w' at
  * both ends; affine, where w' does not matter: n 2^bits <= 2^33 (docs/error-bound.md). */
