@@ -45,7 +45,7 @@ EW_ALWAYS_INLINE divisor divisor_of(uint32_t w, int newton)
 {
     divisor d;
     d.zeros = ew_clz32(w);
-    d.reciprocal = newton ? ew_recip_newton(w << d.zeros) : ew_recip_table(w << d.zeros);
+    d.reciprocal = newton ? ew_recip_newton(w << d.zeros) : ew_recip_table_inline(w << d.zeros);
     return d;
 }
 
@@ -133,13 +133,9 @@ static void packing_init(packing *k, const ew_raster *raster, const ew_triangle 
     k->newton = t->newton;
 }
 
-/* 1/z as uq1.31 at the next pixel, and its step. */
-EW_ALWAYS_INLINE void packing_depth(packing *k, const linear *l, int lead)
-{
-    int down = lead + l->align; /* w' = w 2^(lead - 1) */
-    k->loop.w = (l->w >> down) << 1;
-    k->loop.dw = (uint32_t)EW_ASR((int32_t)l->dw, down) << 1;
-}
+/* w' 2^align = w 2^(lead + align - 1) as uq1.31, and its step. */
+EW_ALWAYS_INLINE uint32_t depth_of(uint32_t w, int down) { return (w >> down) << 1; }
+EW_ALWAYS_INLINE uint32_t depth_step(uint32_t dw, int down) { return (uint32_t)EW_ASR((int32_t)dw, down) << 1; }
 
 #if EW_TRACE
 static void trace(packing *k)
@@ -387,13 +383,12 @@ EW_ALWAYS_INLINE int is_plain(const ew_triangle *t, uint32_t w, uint32_t dw, int
 EW_ALWAYS_INLINE void piece(const ew_raster *raster, const ew_triangle *t, linear *l, int32_t x, int32_t y, size_t offset,
                          int32_t n)
 {
-    /* w' = w 2^(lead - 1) */
     int down = t->w_lead + l->align;
-    uint32_t w = (l->w >> down) << 1, dw = (uint32_t)EW_ASR((int32_t)l->dw, down) << 1;
+    uint32_t w = depth_of(l->w, down), dw = depth_step(l->dw, down);
     if (is_plain(t, w, dw, n)) {
         packing k;
         packing_init(&k, raster, t);
-        packing_depth(&k, l, t->w_lead);
+        k.loop.w = w, k.loop.dw = dw;
         k.colour = (uint16_t *)raster->target.colour + offset;
         k.depth = raster->target.depth + offset;
 #if EW_TRACE
@@ -408,16 +403,14 @@ EW_ALWAYS_INLINE void piece(const ew_raster *raster, const ew_triangle *t, linea
     }
 }
 
-/* Planes of w', u and v at x on the current row. */
-EW_ALWAYS_INLINE int narrow_start(linear *l, const ew_triangle *t, int32_t x)
+/* w', u and v at x on the current row. */
+EW_ALWAYS_INLINE void narrow_start(linear *l, const ew_triangle *t, int32_t x)
 {
     const ew_plane32 *p = t->plane.narrow;
-    uint32_t columns = (uint32_t)(x - t->column), dw = p[EW_PLANE_W].dx, du = p[EW_PLANE_U].dx, dv = p[EW_PLANE_V].dx;
-    l->align = 0;
-    l->w = p[EW_PLANE_W].row + dw * columns, l->dw = dw;
-    l->u = p[EW_PLANE_U].row + du * columns, l->du = du;
-    l->v = p[EW_PLANE_V].row + dv * columns, l->dv = dv;
-    return 1;
+    uint32_t columns = (uint32_t)(x - t->column);
+    l->w = p[EW_PLANE_W].row + l->dw * columns;
+    l->u = p[EW_PLANE_U].row + l->du * columns;
+    l->v = p[EW_PLANE_V].row + l->dv * columns;
 }
 
 EW_NOINLINE void span_of_narrow(const ew_raster *raster, const ew_triangle *t, int32_t x, int32_t y, size_t offset,
@@ -425,6 +418,10 @@ EW_NOINLINE void span_of_narrow(const ew_raster *raster, const ew_triangle *t, i
 {
     const ew_plane32 *p = &t->plane.narrow[EW_PLANE_SHADE];
     linear l;
+    l.align = 0;
+    l.dw = t->plane.narrow[EW_PLANE_W].dx;
+    l.du = t->plane.narrow[EW_PLANE_U].dx;
+    l.dv = t->plane.narrow[EW_PLANE_V].dx;
     narrow_start(&l, t, x);
     if (t->attributes == 0) l.u = l.du = l.v = l.dv = 0;
     for (int i = 0; i < t->attributes - 2; i++) {
@@ -453,16 +450,14 @@ EW_ALWAYS_INLINE int steps_suffice(const ew_triangle *t, uint32_t w, uint32_t la
     return n <= EW_LONGEST_RUN && n * ((int32_t)1 << (t->uv_bits - EW_BITS_LEAST)) <= EW_ASR(least, EW_BITS_LEAST - 2); /* 2^9 2^8 */
 }
 
-/* The same for wide triangles. Returns whether steps of 32 bits will do, unaligned. */
-EW_NOINLINE int wide_start(linear *l, const ew_triangle *t, int32_t x, int32_t n)
+/* The same for wide triangles, unaligned. */
+EW_NOINLINE void wide_start(linear *l, const ew_triangle *t, int32_t x)
 {
     const ew_plane64 *p = t->plane.wide;
     x -= t->column;
-    l->align = 0;
-    l->w = top_of(p[EW_PLANE_W].row + ew_wrap_mul64(p[EW_PLANE_W].dx, x), 0), l->dw = top_of(p[EW_PLANE_W].dx, 0);
-    l->u = top_of(p[EW_PLANE_U].row + ew_wrap_mul64(p[EW_PLANE_U].dx, x), 0), l->du = top_of(p[EW_PLANE_U].dx, 0);
-    l->v = top_of(p[EW_PLANE_V].row + ew_wrap_mul64(p[EW_PLANE_V].dx, x), 0), l->dv = top_of(p[EW_PLANE_V].dx, 0);
-    return steps_suffice(t, l->w, l->w + l->dw * (uint32_t)(n - 1), n);
+    l->w = top_of(p[EW_PLANE_W].row + ew_wrap_mul64(p[EW_PLANE_W].dx, x), 0);
+    l->u = top_of(p[EW_PLANE_U].row + ew_wrap_mul64(p[EW_PLANE_U].dx, x), 0);
+    l->v = top_of(p[EW_PLANE_V].row + ew_wrap_mul64(p[EW_PLANE_V].dx, x), 0);
 }
 
 /* The longest piece, from the first pixel on, for which steps of 32 bits will do. */
@@ -511,27 +506,27 @@ EW_NOINLINE void span_of_wide(const ew_raster *raster, const ew_triangle *t, int
 /* ---- rows ---- */
 
 /* To the next row; shades are rare. */
-EW_ALWAYS_INLINE void planes_step(ew_triangle *t)
+EW_ALWAYS_INLINE void planes_step(ew_triangle *t, int wide, int attributes)
 {
     ew_plane32 *p = t->plane.narrow;
     ew_plane64 *q = t->plane.wide;
-    if (t->is_wide) {
-        for (int i = 0; i <= t->attributes; i++) q[i].row += q[i].dy;
+    if (wide) {
+        for (int i = 0; i <= attributes; i++) q[i].row += q[i].dy;
         return;
     }
     p[EW_PLANE_W].row += p[EW_PLANE_W].dy;
     p[EW_PLANE_U].row += p[EW_PLANE_U].dy; /* no harm where there are none */
     p[EW_PLANE_V].row += p[EW_PLANE_V].dy;
-    for (int i = EW_PLANE_SHADE; i <= t->attributes; i++) p[i].row += p[i].dy;
+    for (int i = EW_PLANE_SHADE; i <= attributes; i++) p[i].row += p[i].dy;
 }
 
 /* Triangles with a texture, depth and nothing else, on the affine rung or in runs: ew_walk_rows
  * for the common case. */
-EW_NOINLINE int rows_of_texture(const ew_raster *raster, ew_triangle *t, ew_edge *left, ew_edge *right, int32_t row,
-                                int32_t end)
+EW_ALWAYS_INLINE int rows_of_texture(const ew_raster *raster, ew_triangle *t, ew_edge *left, ew_edge *right, int32_t row,
+                                     int32_t end, int wide)
 {
     const int32_t clip_left = raster->scissor.x0, clip_right = raster->scissor.x1;
-    const int wide = t->is_wide, affine = t->rung == EW_RUNG_AFFINE;
+    const int affine = t->rung == EW_RUNG_AFFINE, down = t->w_lead;
     const size_t offset = (size_t)row * raster->target.stride;
     uint16_t *colour = (uint16_t *)raster->target.colour + offset, *depth = raster->target.depth + offset;
     ew_edge l = *left, r = *right; /* or they would be read and written around each span */
@@ -539,16 +534,27 @@ EW_NOINLINE int rows_of_texture(const ew_raster *raster, ew_triangle *t, ew_edge
     linear s;
     packing k;
     packing_init(&k, raster, t);
+    s.align = 0;
+    s.dw = wide ? top_of(t->plane.wide[EW_PLANE_W].dx, 0) : t->plane.narrow[EW_PLANE_W].dx;
+    s.du = wide ? top_of(t->plane.wide[EW_PLANE_U].dx, 0) : t->plane.narrow[EW_PLANE_U].dx;
+    s.dv = wide ? top_of(t->plane.wide[EW_PLANE_V].dx, 0) : t->plane.narrow[EW_PLANE_V].dx;
+    k.loop.dw = depth_step(s.dw, down);
     for (; row < end; row++) {
         int32_t x = larger(l.x, clip_left), n = smaller(r.x, clip_right) - x;
         if (n > 0) {
+            int whole = 1;
             k.colour = colour + x;
             k.depth = depth + x;
 #if EW_TRACE
             k.x = (uint16_t)x, k.y = (uint16_t)row;
 #endif
-            int whole = wide ? wide_start(&s, t, x, n) : narrow_start(&s, t, x);
-            packing_depth(&k, &s, t->w_lead);
+            if (wide) {
+                wide_start(&s, t, x);
+                whole = steps_suffice(t, s.w, s.w + s.dw * (uint32_t)(n - 1), n);
+            } else {
+                narrow_start(&s, t, x);
+            }
+            k.loop.w = depth_of(s.w, down);
             if (!whole) span_of_wide(raster, t, x, row, (size_t)(k.colour - (uint16_t *)raster->target.colour), n);
             else if (affine) fill_textured(&k, s.u, s.du, s.v, s.dv, n);
             else if (one_run_suffices(t, s.w, s.dw, n)) run_of_texture(&k, &s, (uint32_t)n >> 1, n);
@@ -557,7 +563,7 @@ EW_NOINLINE int rows_of_texture(const ew_raster *raster, ew_triangle *t, ew_edge
         }
         ew_edge_step(&l);
         ew_edge_step(&r);
-        planes_step(t);
+        planes_step(t, wide, 2);
         colour += raster->target.stride;
         depth += raster->target.stride;
     }
@@ -565,10 +571,19 @@ EW_NOINLINE int rows_of_texture(const ew_raster *raster, ew_triangle *t, ew_edge
     *right = r;
     return reached;
 }
+EW_NOINLINE int rows_of_narrow(const ew_raster *raster, ew_triangle *t, ew_edge *left, ew_edge *right, int32_t row, int32_t end)
+{
+    return rows_of_texture(raster, t, left, right, row, end, 0);
+}
+EW_NOINLINE int rows_of_wide(const ew_raster *raster, ew_triangle *t, ew_edge *left, ew_edge *right, int32_t row, int32_t end)
+{
+    return rows_of_texture(raster, t, left, right, row, end, 1);
+}
 
 int ew_walk_rows(const ew_raster *raster, ew_triangle *t, ew_edge *left, ew_edge *right, int32_t row, int32_t end)
 {
-    if (t->is_quick) return rows_of_texture(raster, t, left, right, row, end);
+    if (t->is_quick && t->is_wide) return rows_of_wide(raster, t, left, right, row, end);
+    if (t->is_quick) return rows_of_narrow(raster, t, left, right, row, end);
     int reached = 0;
     const int32_t clip_left = raster->scissor.x0, clip_right = raster->scissor.x1;
     ew_edge l = *left, r = *right; /* or they would be read and written around each span */
@@ -582,7 +597,7 @@ int ew_walk_rows(const ew_raster *raster, ew_triangle *t, ew_edge *left, ew_edge
         }
         ew_edge_step(&l);
         ew_edge_step(&r);
-        planes_step(t);
+        planes_step(t, t->is_wide, t->attributes);
     }
     *left = l;
     *right = r;
