@@ -6,6 +6,7 @@
  */
 #include "texture.h"
 
+#include "arch.h"
 #include "pixel.h"
 
 /* ---- checks ---- */
@@ -86,8 +87,8 @@ typedef struct axis {
 } axis;
 
 /* u and du are texels of the first level. `back` is taken off the position, below one texel. */
-EW_APART void axis_start(axis *a, uint64_t u, uint64_t du, uint32_t size, uint32_t level, int wrap, uint32_t inverse,
-                         uint32_t back)
+EW_NOINLINE void axis_start(axis *a, uint64_t u, uint64_t du, uint32_t size, uint32_t level, int wrap, uint32_t inverse,
+                            uint32_t back)
 {
     const int clamped = EW_WITH_WRAPS && wrap == EW_WRAP_CLAMP;
     a->size = EW_WITH_MIPS && level ? (size >> level ? size >> level : 1u) : size;
@@ -211,7 +212,7 @@ static uint32_t stored(const sampler *s, uint32_t column, uint32_t row)
     return ew_packed_get(line, column, s->log2_bits);
 }
 
-EW_APART void fetch(const sampler *s, uint32_t column, uint32_t row, uint16_t out[3])
+EW_NOINLINE void fetch(const sampler *s, uint32_t column, uint32_t row, uint16_t out[3])
 {
     const ew_texture *t = s->texture;
     uint32_t value = stored(s, column, row);
@@ -225,7 +226,7 @@ EW_APART void fetch(const sampler *s, uint32_t column, uint32_t row, uint16_t ou
 }
 
 /* Whether a texel is left out. */
-EW_APART int is_cut(const sampler *s, uint32_t column, uint32_t row)
+EW_NOINLINE int is_cut(const sampler *s, uint32_t column, uint32_t row)
 {
     if ((s->cuts & EW_ALPHA_MASK) && !ew_packed_get(s->mask + (size_t)row * s->mask_row_bytes, column, 0)) return 1;
     return (s->cuts & EW_COLOUR_KEY) && stored(s, column, row) == s->texture->key;
@@ -234,7 +235,7 @@ EW_APART int is_cut(const sampler *s, uint32_t column, uint32_t row)
 #if EW_WITH_BILINEAR
 /* The four texels around a position whose whole part is the upper left one, weighted in
  * 1/32: fu and fv are five bits of the fraction. */
-EW_APART void fetch_four(const sampler *s, uint32_t fu, uint32_t fv, uint16_t out[3])
+EW_NOINLINE void fetch_four(const sampler *s, uint32_t fu, uint32_t fv, uint16_t out[3])
 {
     const uint32_t both = (fu * fv + 16u) >> 5; /* the weights: none is below 0, their sum is 32 */
     uint32_t sum[3] = { 0, 0, 0 };
@@ -252,7 +253,7 @@ EW_APART void fetch_four(const sampler *s, uint32_t fu, uint32_t fv, uint16_t ou
 /* Bilinear positions begin at the upper left texel's centre; 1/64 texel rounds the weights. */
 #define HALF_TEXEL ((UINT32_C(1) << 31) - (UINT32_C(1) << 26))
 
-EW_APART void start(sampler *s, const ew_raster *raster, const ew_run *run, uint32_t level)
+EW_NOINLINE void start(sampler *s, const ew_raster *raster, const ew_run *run, uint32_t level)
 {
     const ew_texture *t = &raster->texture;
     s->texture = t;
@@ -266,7 +267,7 @@ EW_APART void start(sampler *s, const ew_raster *raster, const ew_run *run, uint
     axis_start(&s->v, run->v, run->dv, t->height, level, t->wrap_v, raster->inverse_height, back);
 }
 
-EW_APART void sample_pixel(const sampler *s, ew_piece *piece, int i)
+EW_NOINLINE void sample_pixel(const sampler *s, ew_piece *piece, int i)
 {
     const uint32_t fu = s->smooth ? (uint32_t)(s->u.at >> 27 & 31u) : 0, fv = s->smooth ? (uint32_t)(s->v.at >> 27 & 31u) : 0;
     /* the nearest texel is the one with the larger weight */
@@ -290,7 +291,7 @@ EW_APART void sample_pixel(const sampler *s, ew_piece *piece, int i)
     }
 }
 
-EW_APART void sample_level(sampler *s, ew_piece *piece)
+EW_NOINLINE void sample_level(sampler *s, ew_piece *piece)
 {
     for (int i = 0; i < piece->n; i++) {
         if (piece->live >> i & 1) sample_pixel(s, piece, i);
