@@ -4,9 +4,13 @@
  * A run is drawn in pieces of EW_PIECE pixels. A piece goes through one step after the other
  * - depth test, texture, depth write, light, fog, target - each a loop over its live pixels,
  * so that what to do is decided once per piece. docs/fills.md says what each step does.
+ *
+ * Steps stay functions of their own: inlined into each other, they would all take room on the
+ * stack at the same time.
  */
 #include "fill.h"
 
+#include "arch.h"
 #include "pixel.h"
 #include "target.h"
 #include "texture.h"
@@ -40,7 +44,7 @@ static uint16_t *depth_at(const ew_raster *raster, const ew_run *run)
     return raster->target.depth + (size_t)run->y * raster->target.stride + run->x;
 }
 
-EW_APART void test_depth(const ew_raster *raster, const ew_run *run, ew_piece *piece)
+EW_NOINLINE void test_depth(const ew_raster *raster, const ew_run *run, ew_piece *piece)
 {
     const uint16_t *depth = depth_at(raster, run);
     uint32_t w = run->w;
@@ -51,7 +55,7 @@ EW_APART void test_depth(const ew_raster *raster, const ew_run *run, ew_piece *p
     piece->live = (uint8_t)live;
 }
 
-EW_APART void write_depth(const ew_raster *raster, const ew_run *run, const ew_piece *piece)
+EW_NOINLINE void write_depth(const ew_raster *raster, const ew_run *run, const ew_piece *piece)
 {
     uint16_t *depth = depth_at(raster, run);
     uint32_t w = run->w;
@@ -60,7 +64,7 @@ EW_APART void write_depth(const ew_raster *raster, const ew_run *run, const ew_p
     }
 }
 
-EW_APART void paint(const ew_raster *raster, ew_piece *piece)
+EW_NOINLINE void paint(const ew_raster *raster, ew_piece *piece)
 {
     uint16_t c[3];
     ew_decode_565(c, raster->material.colour, ew_wide(&raster->target));
@@ -69,7 +73,7 @@ EW_APART void paint(const ew_raster *raster, ew_piece *piece)
     }
 }
 
-EW_APART void shade(const ew_run *run, ew_piece *piece)
+EW_NOINLINE void shade(const ew_run *run, ew_piece *piece)
 {
     for (int k = 0; k < 3; k++) {
         uint32_t s = (uint32_t)run->shade[k];
@@ -82,7 +86,7 @@ EW_APART void shade(const ew_run *run, ew_piece *piece)
     }
 }
 
-EW_APART void fog(const ew_raster *raster, const ew_run *run, ew_piece *piece)
+EW_NOINLINE void fog(const ew_raster *raster, const ew_run *run, ew_piece *piece)
 {
     const uint32_t range = raster->fog_near - raster->fog_far;
     uint16_t c[3];

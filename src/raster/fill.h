@@ -30,14 +30,6 @@ typedef struct ew_piece {
     uint16_t colour[EW_PIECE][3];
 } ew_piece;
 
-/* Steps that are called once per piece or texel stay functions: inlined into each other, they
- * would all take room on the stack at the same time. */
-#if defined(__GNUC__)
-#define EW_APART static __attribute__((noinline))
-#else
-#define EW_APART static
-#endif
-
 /* Draws n pixels. The run is used up: it moves along. */
 void ew_fill_any(const ew_raster *raster, ew_run *run, int32_t n);
 

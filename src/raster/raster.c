@@ -107,17 +107,17 @@ void ew_raster_clear(ew_raster *raster, uint16_t rgb565)
 {
     const ew_rect *r = &raster->scissor;
     const ew_target *target = &raster->target;
-    const int as_it_is = target->format == EW_TARGET_RGB565 && !target->dither;
+    /* dither leaves RGB565 alone */
+    const int as_it_is = !EW_WITH_TARGET_FORMATS || target->format == EW_TARGET_RGB565;
     ew_piece piece;
     piece.live = 0xFF;
     for (int i = 0; i < EW_PIECE; i++) ew_decode_565(piece.colour[i], rgb565, ew_wide(target));
     for (uint16_t y = r->y0; y < r->y1; y++) {
         const size_t row = (size_t)y * target->stride;
-        piece.y = y;
-        for (uint16_t x = r->x0; x < r->x1 && !as_it_is; x = (uint16_t)(x + piece.n)) {
-            piece.x = x;
-            piece.n = r->x1 - x < EW_PIECE ? r->x1 - x : EW_PIECE;
-            ew_target_put(target, &piece, EW_BLEND_NONE);
+        if (!as_it_is) {
+            piece.x = r->x0;
+            piece.y = y;
+            ew_target_fill(target, &piece, r->x1);
         }
         for (uint16_t x = r->x0; x < r->x1; x++) {
             if (as_it_is) ((uint16_t *)target->colour)[row + x] = rgb565;

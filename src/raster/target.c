@@ -122,3 +122,24 @@ void ew_target_put(const ew_target *target, const ew_piece *piece, int blend)
         write_pixel(target, row, x, log2_bits, pixel);
     }
 }
+
+#if EW_WITH_TARGET_FORMATS
+void ew_target_fill(const ew_target *target, ew_piece *piece, uint16_t x1)
+{
+    /* dither comes again after 8 pixels, and those are whole bytes */
+    const uint32_t bytes = (uint32_t)1 << layouts[target->format].log2_bits;
+    const uint8_t *pattern = NULL;
+    for (uint32_t x = piece->x; x < x1; x += (uint32_t)piece->n) {
+        const uint32_t room = 8u - (x & 7u), left = x1 - x;
+        uint8_t *to = (uint8_t *)target->colour + (((size_t)piece->y * target->stride + x) * bytes >> 3);
+        piece->n = (int)(room < left ? room : left);
+        if (piece->n < 8 || !pattern) {
+            piece->x = (uint16_t)x;
+            ew_target_put(target, piece, EW_BLEND_NONE);
+            if (piece->n == 8) pattern = to;
+        } else {
+            for (uint32_t i = 0; i < bytes; i++) to[i] = pattern[i];
+        }
+    }
+}
+#endif

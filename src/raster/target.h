@@ -10,4 +10,8 @@ int ew_target_check(const ew_target *target);
 /* Converts, dithers, blends and stores the live pixels of a piece. */
 void ew_target_put(const ew_target *target, const ew_piece *piece, int blend);
 
+/* Stores the piece's colours, which are all the same, from its x to below x1: an n of EW_PIECE
+ * and all live are assumed and used up. */
+void ew_target_fill(const ew_target *target, ew_piece *piece, uint16_t x1);
+
 #endif

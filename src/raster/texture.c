@@ -6,6 +6,7 @@
  */
 #include "texture.h"
 
+#include "arch.h"
 #include "pixel.h"
 
 /* ---- checks ---- */
@@ -86,8 +87,8 @@ typedef struct axis {
 } axis;
 
 /* u and du are texels of the first level. `back` is taken off the position, below one texel. */
-EW_APART void axis_start(axis *a, uint64_t u, uint64_t du, uint32_t size, uint32_t level, int wrap, uint32_t inverse,
-                         uint32_t back)
+EW_NOINLINE void axis_start(axis *a, uint64_t u, uint64_t du, uint32_t size, uint32_t level, int wrap, uint32_t inverse,
+                            uint32_t back)
 {
     const int clamped = EW_WITH_WRAPS && wrap == EW_WRAP_CLAMP;
     a->size = EW_WITH_MIPS && level ? (size >> level ? size >> level : 1u) : size;
@@ -172,15 +173,18 @@ uint32_t ew_texture_level(const ew_run *run)
 }
 #endif
 
-/* A level as it lies in memory, and the position in it. */
+/* A level as it lies in memory, the position in it, and what to do with its colours. */
 typedef struct sampler {
     const ew_texture *texture;
     const uint8_t *texels;
     const uint8_t *mask; /* NULL: none                                                     */
     axis u, v;
     uint16_t row_bytes, mask_row_bytes; /* 4096 at most                                     */
+    uint16_t share;    /* of 256: how far they take the place of what the piece has        */
     uint8_t log2_bits; /* of a texel                                                      */
     uint8_t wide;      /* of ew_decode_565                                                */
+    uint8_t smooth;    /* bilinear                                                        */
+    uint8_t cuts;      /* EW_COLOUR_KEY, EW_ALPHA_MASK: by which this level leaves texels out */
 } sampler;
 
 static uint32_t row_bytes_of(uint32_t width, int log2_bits) { return ((width << log2_bits) + 7u) >> 3; }
@@ -208,7 +212,7 @@ static uint32_t stored(const sampler *s, uint32_t column, uint32_t row)
     return ew_packed_get(line, column, s->log2_bits);
 }
 
-EW_APART void fetch(const sampler *s, uint32_t column, uint32_t row, uint16_t out[3])
+EW_NOINLINE void fetch(const sampler *s, uint32_t column, uint32_t row, uint16_t out[3])
 {
     const ew_texture *t = s->texture;
     uint32_t value = stored(s, column, row);
@@ -222,16 +226,16 @@ EW_APART void fetch(const sampler *s, uint32_t column, uint32_t row, uint16_t ou
 }
 
 /* Whether a texel is left out. */
-EW_APART int is_cut(const sampler *s, int flags, uint32_t column, uint32_t row)
+EW_NOINLINE int is_cut(const sampler *s, uint32_t column, uint32_t row)
 {
-    if (s->mask && !ew_packed_get(s->mask + (size_t)row * s->mask_row_bytes, column, 0)) return 1;
-    return (flags & EW_COLOUR_KEY) && stored(s, column, row) == s->texture->key;
+    if ((s->cuts & EW_ALPHA_MASK) && !ew_packed_get(s->mask + (size_t)row * s->mask_row_bytes, column, 0)) return 1;
+    return (s->cuts & EW_COLOUR_KEY) && stored(s, column, row) == s->texture->key;
 }
 
 #if EW_WITH_BILINEAR
 /* The four texels around a position whose whole part is the upper left one, weighted in
  * 1/32: fu and fv are five bits of the fraction. */
-EW_APART void fetch_four(const sampler *s, uint32_t fu, uint32_t fv, uint16_t out[3])
+EW_NOINLINE void fetch_four(const sampler *s, uint32_t fu, uint32_t fv, uint16_t out[3])
 {
     const uint32_t both = (fu * fv + 16u) >> 5; /* the weights: none is below 0, their sum is 32 */
     uint32_t sum[3] = { 0, 0, 0 };
@@ -249,73 +253,75 @@ EW_APART void fetch_four(const sampler *s, uint32_t fu, uint32_t fv, uint16_t ou
 /* Bilinear positions begin at the upper left texel's centre; 1/64 texel rounds the weights. */
 #define HALF_TEXEL ((UINT32_C(1) << 31) - (UINT32_C(1) << 26))
 
-EW_APART void start(sampler *s, const ew_raster *raster, const ew_run *run, uint32_t level)
+EW_NOINLINE void start(sampler *s, const ew_raster *raster, const ew_run *run, uint32_t level)
 {
     const ew_texture *t = &raster->texture;
-    const uint32_t back = raster->material.filter != EW_FILTER_NEAREST ? HALF_TEXEL : 0;
     s->texture = t;
     s->mask = EW_WITH_CUTOUTS && (raster->material.flags & EW_ALPHA_MASK) ? t->mask : NULL;
     s->log2_bits = log2_bits_of(t->format);
     s->wide = ew_wide(&raster->target);
+    s->smooth = EW_WITH_BILINEAR && raster->material.filter != EW_FILTER_NEAREST;
     find_level(s, level);
+    const uint32_t back = s->smooth ? HALF_TEXEL : 0;
     axis_start(&s->u, run->u, run->du, t->width, level, t->wrap_u, raster->inverse_width, back);
     axis_start(&s->v, run->v, run->dv, t->height, level, t->wrap_v, raster->inverse_height, back);
 }
 
-/* The colour at the sampler's position; 0 where the texel is left out. */
-EW_APART int sample(const sampler *s, int smooth, int flags, uint16_t out[3])
+EW_NOINLINE void sample_pixel(const sampler *s, ew_piece *piece, int i)
 {
-    const uint32_t fu = smooth ? (uint32_t)(s->u.at >> 27 & 31u) : 0, fv = smooth ? (uint32_t)(s->v.at >> 27 & 31u) : 0;
+    const uint32_t fu = s->smooth ? (uint32_t)(s->u.at >> 27 & 31u) : 0, fv = s->smooth ? (uint32_t)(s->v.at >> 27 & 31u) : 0;
     /* the nearest texel is the one with the larger weight */
     const uint32_t column = texel_index(&s->u, fu >> 4), row = texel_index(&s->v, fv >> 4);
-    if (EW_WITH_CUTOUTS && flags && is_cut(s, flags, column, row)) return 0;
+    uint16_t c[3];
+    if (EW_WITH_CUTOUTS && s->cuts && is_cut(s, column, row)) {
+        piece->live = (uint8_t)(piece->live & ~(1u << i));
+        return;
+    }
 #if EW_WITH_BILINEAR
     if (fu | fv) {
-        fetch_four(s, fu, fv, out);
-        return 1;
-    }
+        fetch_four(s, fu, fv, c);
+    } else
 #endif
-    fetch(s, column, row, out);
-    return 1;
+    {
+        fetch(s, column, row, c);
+    }
+    for (int k = 0; k < 3; k++) {
+        if (EW_WITH_MIPS && s->share < 256) c[k] = ew_mix256(piece->colour[i][k], c[k], s->share);
+        piece->colour[i][k] = c[k];
+    }
 }
 
-/* Colours of one level; they take the place of what the piece has by `share` / 256.
- * `decides`: whether this level says which texels are left out. */
-EW_APART void sample_level(const ew_raster *raster, const ew_run *run, ew_piece *piece, uint32_t level, uint32_t share,
-                           int decides)
+EW_NOINLINE void sample_level(sampler *s, ew_piece *piece)
 {
-    const int smooth = EW_WITH_BILINEAR && raster->material.filter != EW_FILTER_NEAREST;
-    const int flags = decides ? raster->material.flags & (EW_COLOUR_KEY | EW_ALPHA_MASK) : 0;
-    sampler s;
-    start(&s, raster, run, level);
-    for (int i = 0; i < piece->n; i++, axis_step(&s.u), axis_step(&s.v)) {
-        uint16_t c[3];
-        if (!(piece->live >> i & 1)) continue;
-        if (!sample(&s, smooth, flags, c)) {
-            piece->live = (uint8_t)(piece->live & ~(1u << i));
-            continue;
-        }
-        for (int j = 0; j < 3; j++) {
-            if (EW_WITH_MIPS && share < 256) c[j] = ew_mix256(piece->colour[i][j], c[j], share);
-            piece->colour[i][j] = c[j];
-        }
+    for (int i = 0; i < piece->n; i++) {
+        if (piece->live >> i & 1) sample_pixel(s, piece, i);
+        axis_step(&s->u);
+        axis_step(&s->v);
     }
 }
 
 void ew_texture_sample(const ew_raster *raster, const ew_run *run, ew_piece *piece)
 {
+    const uint8_t cuts = EW_WITH_CUTOUTS ? raster->material.flags & (EW_COLOUR_KEY | EW_ALPHA_MASK) : 0;
+    uint32_t level = 0, share = 0; /* of the level behind it */
+    sampler s;
 #if EW_WITH_MIPS
-    const uint32_t last = raster->texture.levels > 1 ? raster->texture.levels - 1u : 0;
-    const uint32_t lambda = last ? ew_texture_level(run) : 0;
-    if (EW_WITH_BILINEAR && raster->material.filter == EW_FILTER_TRILINEAR && lambda < last << 8) {
-        const uint32_t share = lambda & 255u;
-        sample_level(raster, run, piece, lambda >> 8, 256, share < 128);
-        if (share) sample_level(raster, run, piece, (lambda >> 8) + 1u, share, share >= 128);
-        return;
+    if (raster->texture.levels > 1) {
+        const uint32_t last = raster->texture.levels - 1u, lambda = ew_texture_level(run);
+        const int two = EW_WITH_BILINEAR && raster->material.filter == EW_FILTER_TRILINEAR;
+        level = (two ? lambda : lambda + 128u) >> 8;
+        if (level >= last) level = last;
+        else if (two) share = lambda & 255u;
     }
-    const uint32_t level = (lambda + 128u) >> 8;
-    sample_level(raster, run, piece, level < last ? level : last, 256, 1);
-#else
-    sample_level(raster, run, piece, 0, 256, 1);
 #endif
+    start(&s, raster, run, level);
+    s.share = 256;
+    s.cuts = share < 128 ? cuts : 0;
+    sample_level(&s, piece);
+    if (EW_WITH_MIPS && share) {
+        start(&s, raster, run, level + 1u);
+        s.share = (uint16_t)share;
+        s.cuts = share < 128 ? 0 : cuts;
+        sample_level(&s, piece);
+    }
 }
