@@ -15,7 +15,7 @@ $(T)/test_coverage_hits: $(PROPERTY)/test_coverage_hits.o $(CASES) $(B)/host_tes
 
 # FUZZ=0.1 runs a tenth. Figures go to build/report/witness.csv.
 FUZZ ?= 1
-FUZZ_TESTS = $(PROPERTY_TESTS)
+FUZZ_TESTS = $(PROPERTY_TESTS) $(MESA_TESTS)
 fuzz:  ## the random tests at full length (FUZZ=0.1: a tenth)
 	@SETUP=$(SETUP) tools/setup/setup.sh test
 	@$(MAKE) --no-print-directory fuzz-programs

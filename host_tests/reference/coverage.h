@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-enum { COVER_PIXELS = 4096 * 16 }; /* the largest picture */
+enum { COVER_PIXELS = 4096 * 32 }; /* the largest picture */
 
 /* Bit x & 63 of bits[y * words + x / 64]; bits at and beyond `width` are 0. */
 typedef struct cover {

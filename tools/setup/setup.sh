@@ -7,7 +7,7 @@ set -eu
 
 # What each goal needs, by the names of Debian 12.
 demo="gcc g++ libc6-dev pkg-config python3 libtinygltf-dev libhidapi-dev libgpiod-dev libpng-dev"
-test="$demo libcmocka-dev assimp-testmodels"
+test="$demo libcmocka-dev assimp-testmodels libosmesa6-dev"
 count="gcc libc6-dev python3 valgrind gcc-arm-none-eabi qemu-system-arm"
 cross="gcc-arm-none-eabi gcc-riscv64-unknown-elf gcc-avr"
 lab="$demo libusb-1.0-0-dev gpiod qemu-system-x86 busybox-static cpio kmod xz-utils"
