@@ -67,14 +67,15 @@ exact_forms exact_from_truth(const ref_triangle *t, int px, int py)
 
 double exact_value(const exact_forms *f, const exact_form *attribute) { return (double)(attribute->at / f->w.at); }
 
-/* How far the line is on which the attribute is c. */
+/* How far the line is on which the attribute is c. Only its half before the horizon, where
+ * 1/z is above 0, is seen: when the foot lies behind, that half's end is the nearest. */
 static double distance_to(const exact_forms *f, const exact_form *a, long double c)
 {
     long double at = a->at - c * f->w.at, dx = a->dx - c * f->w.dx, dy = a->dy - c * f->w.dy, square = dx * dx + dy * dy;
     if (square == 0) return HUGE_VAL;
-    /* the foot on that line has to be in front of the eye */
-    if (f->w.at - at * (dx * f->w.dx + dy * f->w.dy) / square <= 0) return HUGE_VAL;
-    return (double)(fabsl(at) / sqrtl(square));
+    if (f->w.at - at * (dx * f->w.dx + dy * f->w.dy) / square > 0) return (double)(fabsl(at) / sqrtl(square));
+    long double cross = dx * f->w.dy - dy * f->w.dx;
+    return (double)(hypotl(f->w.at * dy - at * f->w.dy, at * f->w.dx - f->w.at * dx) / fabsl(cross));
 }
 
 double exact_radius(const exact_forms *f, const exact_form *attribute, double drawn, double period, double e)
