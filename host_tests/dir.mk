@@ -70,6 +70,7 @@ $(T)/test_fill-without-%: host_tests/unit/test_fill.c host_tests/unit/unit.c hos
 include host_tests/property/dir.mk
 include host_tests/mesa/dir.mk
 include host_tests/fuzz/dir.mk
+include host_tests/static/dir.mk
 
 # ---- goals ----
 accuracy: $(T)/test_accuracy  ## the referee's figures for the standard scenes, rung by rung
@@ -84,7 +85,7 @@ test:  ## set up what is missing and run every host test
 	@SETUP=$(SETUP) tools/setup/setup.sh test
 	@$(MAKE) --no-print-directory test-programs
 	@$(MAKE) --no-print-directory MODE=sanitize sanitize-programs
-	@EW_BIN=$(BIN) $(RUN) $(UNIT_TESTS) $(PROPERTY_TESTS) $(MESA_TESTS) $(CONFIG_TESTS) $(CLI_TESTS) \
+	@EW_BIN=$(BIN) $(RUN) $(UNIT_TESTS) $(PROPERTY_TESTS) $(MESA_TESTS) $(CONFIG_TESTS) $(STATIC_TESTS) $(CLI_TESTS) \
 	  $(patsubst build/$(MODE)/%,build/sanitize/%,$(SANITIZE_TESTS))
 SANITIZE_TESTS := $(filter-out $(T)/test_recip $(T)/test_readme,$(UNIT_TESTS)) $(T)/test_any_bits
 test-programs: programs $(BIN)/ew-accuracy $(UNIT_TESTS) $(PROPERTY_TESTS) $(MESA_TESTS) $(CONFIG_TESTS) check-tables

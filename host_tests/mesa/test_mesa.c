@@ -50,7 +50,7 @@ void ew_trace_fragment(uint16_t x, uint16_t y, uint16_t d, ew_q20_12 u, ew_q20_1
 
 static void start(uint16_t width, uint16_t height, ew_rung rung, uint16_t tolerance)
 {
-    const ew_target target = { colour, depth, width, height, W };
+    const ew_target target = { .colour = colour, .depth = depth, .width = width, .height = height, .stride = W };
     const ew_texture texture = { .texels = texels, .width = SIZE, .height = SIZE };
     const ew_material material = { .texture = &texture, .tolerance = tolerance, .rung = (uint8_t)rung,
                                    .flags = EW_DOUBLE_SIDED };

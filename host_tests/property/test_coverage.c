@@ -46,7 +46,7 @@ enum { WAYS = sizeof ways / sizeof *ways };
 
 static void size(uint16_t w, uint16_t h)
 {
-    const ew_target target = { colour, NULL, w, h, w };
+    const ew_target target = { .colour = colour, .depth = NULL, .width = w, .height = h, .stride = w };
     width = w, height = h;
     assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
 }
@@ -56,7 +56,7 @@ static void choose(uint16_t texels[4], ew_rect *scissor, int *sides)
 {
     int way = (int)pick(WAYS);
     const ew_texture texture = { .texels = texels, .width = 2, .height = 2 };
-    const ew_target target = { colour, ways[way].with_depth ? depth : NULL, width, height, width };
+    const ew_target target = { .colour = colour, .depth = ways[way].with_depth ? depth : NULL, .width = width, .height = height, .stride = width };
     assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
     if (++tag == 0) {
         memset(colour_memory, 0, sizeof colour_memory);

@@ -131,7 +131,7 @@ static void use(const way *w)
 
 static void picture(uint16_t w, uint16_t h)
 {
-    const ew_target target = { colour, depth, w, h, w };
+    const ew_target target = { .colour = colour, .depth = depth, .width = w, .height = h, .stride = w };
     static const uint16_t sizes[][2] = { { 256, 256 }, { 2048, 2048 }, { 2048, 32 }, { 64, 1024 }, { 256, 128 } };
     uint32_t size = pick(5);
     width = w, height = h;

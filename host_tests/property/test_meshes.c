@@ -27,7 +27,7 @@ static struct {
 
 static void begin(void)
 {
-    const ew_target target = { colour, NULL, W, H, W };
+    const ew_target target = { .colour = colour, .depth = NULL, .width = W, .height = H, .stride = W };
     assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
     mesh.corners = mesh.triangles = mesh.border_corners = 0;
     mesh.grid = 1 << pick(12);

@@ -13,8 +13,9 @@ void cover_begin(cover *c, int width, int height)
     c->width = width;
     c->height = height;
     c->words = (width + 63) / 64;
-    if ((size_t)(c->words * height) > sizeof c->bits / sizeof *c->bits) abort();
-    memset(c->bits, 0, (size_t)(c->words * height) * sizeof *c->bits);
+    size_t all = (size_t)c->words * (size_t)height;
+    if (all > sizeof c->bits / sizeof *c->bits) abort();
+    memset(c->bits, 0, all * sizeof *c->bits);
 }
 
 int cover_at(const cover *c, int x, int y) { return (int)(c->bits[y * c->words + x / 64] >> (x & 63) & 1); }
