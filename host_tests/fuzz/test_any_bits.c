@@ -13,10 +13,16 @@
 #include <string.h>
 
 #include "edgewalk/geometry.h"
+#include "edgewalk/light.h"
 
 enum { MOST_PIXELS = 1 << 16, MARK = 0xA5 };
 
 /* ---- bytes ---- */
+
+static void fill(void *structure, size_t size)
+{
+    for (size_t i = 0; i < size; i++) ((uint8_t *)structure)[i] = (uint8_t)test_random();
+}
 
 /* Leaves a structure as it is, spoils some of its bytes, or all. Small numbers are frequent:
  * they are what enumerations accept. */
@@ -161,7 +167,7 @@ static void new_material(void)
     spoil(&texture, sizeof texture);
     if (texture_bytes(&texture) > 1 << 16 && pick(32)) texture.width = 1; /* large ones take time */
     m.tolerance = (uint16_t)(pick(2) ? 0 : pick(EW_TOLERANCE_MAX + 1));
-    m.rung = (uint8_t)pick(6);
+    m.rung = (uint8_t)pick(EW_RUNG_COUNT);
     m.flags = (uint8_t)(pick(8) | (pick(2) ? EW_DOUBLE_SIDED : 0));
     spoil(&m, sizeof m);
     size_t bytes = texture_bytes(&texture);
@@ -212,6 +218,23 @@ static void any_row(ew_row *row)
     row->e_last = (int16_t)(pick(4) ? row->e + (int)pick(9) - 4 : (int)pick(2001) - 1000);
 }
 
+/* Any lights, any normals. */
+static void light(ew_colour888 *colours, uint32_t count)
+{
+    enum { VERTICES = 8 };
+    ew_lighting lighting;
+    ew_light lights[EW_LIGHTS_MAX];
+    ew_normal8 normals[VERTICES];
+    ew_colour888 ambient, material;
+    ew_mat34 matrix;
+    for (int i = 0; i < 3; i++) any_row(&matrix.row[i]);
+    fill(lights, sizeof lights), fill(normals, sizeof normals), fill(&ambient, sizeof ambient);
+    fill(&material, sizeof material), fill(colours, count * sizeof *colours);
+    int error = ew_lighting_set(&lighting, &matrix, ambient, lights, pick(EW_LIGHTS_MAX + 2), material, (int)pick(2));
+    assert_true(error == EW_OK || error == EW_ERR_ARGUMENT);
+    if (!error) ew_light_vertices(&lighting, normals, pick(2) ? colours : NULL, count, colours);
+}
+
 static long draw_mesh(void)
 {
     enum { VERTICES = 6, INDICES = 12 };
@@ -219,6 +242,7 @@ static long draw_mesh(void)
     ew_vertex16 v[VERTICES];
     ew_screen_vertex screen[VERTICES];
     uint16_t indices[INDICES];
+    ew_colour888 colours[VERTICES];
     ew_projection projection;
     ew_viewport viewport = { 0, 0, now.target.width, now.target.height };
     ew_mat34 model_view;
@@ -233,7 +257,7 @@ static long draw_mesh(void)
         else ew_row_from_q16_16(&model_view.row[i], i == 0 ? 65536 << scale >> 2 : (int32_t)pick(4096), i == 1 ? 65536 : 0,
                                 i == 2 ? 65536 : 0, i == 2 ? -(int32_t)pick(1 << 18) : 0);
     }
-    for (size_t i = 0; i < sizeof v; i++) ((uint8_t *)v)[i] = (uint8_t)test_random();
+    fill(v, sizeof v);
     for (int i = 0; i < INDICES; i++) indices[i] = (uint16_t)pick(VERTICES);
     memset(&geometry, MARK, sizeof geometry);
     ew_geometry_init(&geometry, &now.raster);
@@ -241,7 +265,10 @@ static long draw_mesh(void)
     assert_true(error == EW_OK || error == EW_ERR_ARGUMENT || error == EW_ERR_RANGE);
     if (error) return 0;
     ew_transform_vertices(&geometry.transform, v, VERTICES, screen);
-    int32_t result = ew_draw_triangles(&geometry, v, screen, indices, INDICES, (uint8_t)pick(13));
+    const ew_mesh mesh = { .vertices = v, .screen = screen, .colours = pick(2) ? colours : NULL, .indices = indices,
+                           .index_count = INDICES, .uv_fraction_bits = (uint8_t)pick(13) };
+    light(colours, VERTICES);
+    int32_t result = ew_draw_triangles(&geometry, &mesh);
     assert_true((result >= 0 && result <= INDICES / 3) || result == EW_ERR_RANGE);
     return result > 0 ? result : 0;
 }

@@ -207,8 +207,9 @@ static void trace_scene(char name)
     assert_int_equal(ew_transform_set(&geometry.transform, &projection, &model_view, &viewport), EW_OK);
     ew_transform_vertices(&geometry.transform, scene.vertices, scene.vertex_count, screen);
     traced.count = 0;
-    assert_true(ew_draw_triangles(&geometry, scene.vertices, screen, scene.indices, scene.index_count,
-                                  scene.uv_fraction_bits) > 0);
+    const ew_mesh mesh = { .vertices = scene.vertices, .screen = screen, .indices = scene.indices,
+                           .index_count = scene.index_count, .uv_fraction_bits = scene.uv_fraction_bits };
+    assert_true(ew_draw_triangles(&geometry, &mesh) > 0);
 }
 
 static void standard_scenes(void **state)

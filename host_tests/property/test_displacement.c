@@ -333,10 +333,12 @@ static void through_the_near_plane(void **state)
         ew_geometry_init(&geometry, &raster);
         assert_int_equal(ew_transform_set(&geometry.transform, &projection, &model_view, &viewport), EW_OK);
         ew_transform_vertices(&geometry.transform, v, 3, screen);
+        const ew_mesh mesh = { .vertices = v, .screen = screen, .indices = corners, .index_count = 3,
+                               .uv_fraction_bits = (uint8_t)bits };
         for (int k = 0; k < WAYS; k++) {
             if (triangle.reach > ways[k].reach) continue;
             use(&ways[k]);
-            int32_t result = ew_draw_triangles(&geometry, v, screen, corners, 3, (uint8_t)bits);
+            int32_t result = ew_draw_triangles(&geometry, &mesh);
             assert_true(result >= 0);
             if (result == 0) break;
             judge_drawn(&ways[k], c.number, NULL, &truth);

@@ -19,8 +19,8 @@ LEVELS = ("-Os", "-O2")
 # What a firmware may link: the header whose functions it calls, the layers it builds, -D options.
 CONFIGURATIONS = {
     "textured, depth": (("raster",), ("fixed", "src/raster"), []),
-    "with transform": (("raster", "geometry"), ("fixed", "src/raster", "src/geometry"), []),
-    "everything": (("fixed", "raster", "geometry", "scene", "error"), ("fixed", "src/raster", "src/geometry", "src/scene"), []),
+    "with transform": (("raster", "geometry", "light"), ("fixed", "src/raster", "src/geometry"), []),
+    "everything": (("fixed", "raster", "geometry", "light", "scene", "error"), ("fixed", "src/raster", "src/geometry", "src/scene"), []),
     "display, device side": (("display",), ("fixed", "src/display"), []),
 }
 
