@@ -12,7 +12,7 @@ fuzz:  ## the random tests at full length, about 20 minutes (FUZZ=0.1: a tenth)
 	@SETUP=$(SETUP) tools/setup/setup.sh test
 	@$(MAKE) --no-print-directory $(PROPERTY_TESTS) $(MESA_TESTS)
 	@$(MAKE) --no-print-directory MODE=sanitize build/sanitize/tests/test_any_bits
-	@mkdir -p $(dir $(FIGURES)); echo 'check,class,cases,judged,wrong,value,unit' > $(FIGURES)
+	@mkdir -p $(dir $(FIGURES)); echo 'check,kind,cases,judged,wrong,value,unit' > $(FIGURES)
 	@failed=; for t in $(FUZZ_TESTS); do \
 	  EW_FUZZ=$(FUZZ) EW_FIGURES=$(FIGURES) $$t || failed="$$failed $$t"; \
 	done; test -z "$$failed" || { echo "fuzz: failed:$$failed" >&2; exit 1; }

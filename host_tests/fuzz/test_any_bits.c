@@ -163,7 +163,8 @@ static void new_material(void)
     ew_material m;
     memset(&texture, 0, sizeof texture);
     memset(&m, 0, sizeof m);
-    texture.width = (uint16_t)(1u << pick(pick(200) ? 6 : 12)), texture.height = (uint16_t)(1u << pick(pick(200) ? 6 : 12));
+    texture.width = (uint16_t)(1u << pick(pick(200) ? 6 : 12));
+    texture.height = (uint16_t)(1u << pick(pick(200) ? 6 : 12));
     spoil(&texture, sizeof texture);
     if (texture_bytes(&texture) > 1 << 16 && pick(32)) texture.width = 1; /* large ones take time */
     m.tolerance = (uint16_t)(pick(2) ? 0 : pick(EW_TOLERANCE_MAX + 1));
@@ -254,8 +255,8 @@ static long draw_mesh(void)
     int before_the_eye = pick(3) != 0, scale = (int)pick(6);
     for (int i = 0; i < 3; i++) {
         if (!before_the_eye) any_row(&model_view.row[i]);
-        else ew_row_from_q16_16(&model_view.row[i], i == 0 ? 65536 << scale >> 2 : (int32_t)pick(4096), i == 1 ? 65536 : 0,
-                                i == 2 ? 65536 : 0, i == 2 ? -(int32_t)pick(1 << 18) : 0);
+        else ew_row_from_q16_16(&model_view.row[i], i == 0 ? 65536 << scale >> 2 : (int32_t)pick(4096),
+                                i == 1 ? 65536 : 0, i == 2 ? 65536 : 0, i == 2 ? -(int32_t)pick(1 << 18) : 0);
     }
     fill(v, sizeof v);
     for (int i = 0; i < INDICES; i++) indices[i] = (uint16_t)pick(VERTICES);

@@ -82,7 +82,8 @@ static int mesa_start(void)
     }
     glGetIntegerv(GL_SUBPIXEL_BITS, &bits);
     if (bits != EW_SUBPIXEL_BITS) {
-        printf("# SKIP %s has %d subpixel bits, the core %d\n", (const char *)glGetString(GL_RENDERER), bits, EW_SUBPIXEL_BITS);
+        printf("# SKIP %s has %d subpixel bits, the core %d\n", (const char *)glGetString(GL_RENDERER), bits,
+               EW_SUBPIXEL_BITS);
         return 0;
     }
     for (int v = 0; v < SIZE; v++) {
@@ -117,7 +118,8 @@ static int draw_mesa(const ew_raster_vertex v[3])
         x0 = sx[i] < x0 ? sx[i] : x0, x1 = sx[i] > x1 ? sx[i] : x1;
         y0 = sy[i] < y0 ? sy[i] : y0, y1 = sy[i] > y1 ? sy[i] : y1;
     }
-    int left = floor_px(x0), top = floor_px(y0), width = side(floor_px(x1) + 1 - left), height = side(floor_px(y1) + 1 - top);
+    int left = floor_px(x0), top = floor_px(y0);
+    int width = side(floor_px(x1) + 1 - left), height = side(floor_px(y1) + 1 - top);
     if (!width || !height) return 0;
     glViewport(left, top, width, height);
     glMatrixMode(GL_PROJECTION);
@@ -153,7 +155,8 @@ static long compare(const ew_raster_vertex v[3], int width, int height)
         for (int x = 0; x < width; x++) {
             int exact = cover_at(&by_edges, x, y), mesa = held ? image[y][x][2] != 0 : exact;
             covered += exact;
-            if (hits[y * W + x] != exact || (depth[y * W + x] != 0) != exact || mesa != exact || cover_at(&by_rows, x, y) != exact) {
+            if (hits[y * W + x] != exact || (depth[y * W + x] != 0) != exact || mesa != exact ||
+                cover_at(&by_rows, x, y) != exact) {
                 fail_msg("pixel %d %d: exact %d, the core %d, Mesa %d", x, y, exact, hits[y * W + x], mesa);
             }
         }
@@ -233,7 +236,10 @@ static void standard_scenes(void **state)
         char text[64];
         snprintf(text, sizeof text, "scene %c", name);
         cases_figure("Mesa", text, count - left_out, judged, 0, NAN, "");
-        if (left_out) printf("# scene %c: %ld triangles are larger than Mesa's largest viewport: the two exact counts only\n", name, left_out);
+        if (left_out) {
+            printf("# scene %c: %ld triangles are larger than Mesa's largest viewport: the two exact counts only\n", name,
+                   left_out);
+        }
     }
 }
 

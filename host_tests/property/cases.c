@@ -29,18 +29,18 @@ int cases_next(cases *c)
     return c->number < c->end;
 }
 
-void cases_figure(const char *check, const char *class_name, long cases_run, long judged, long wrong, double value,
+void cases_figure(const char *check, const char *kind, long cases_run, long judged, long wrong, double value,
                   const char *unit)
 {
     char text[32] = "na";
     if (!isnan(value)) snprintf(text, sizeof text, "%.6g", value);
-    printf("# %s, %s: %ld cases, %ld judged, %ld wrong", check, class_name, cases_run, judged, wrong);
+    printf("# %s, %s: %ld cases, %ld judged, %ld wrong", check, kind, cases_run, judged, wrong);
     if (!isnan(value)) printf(", %s %s", text, unit);
     printf("\n");
     const char *path = getenv("EW_FIGURES");
     FILE *f = path ? fopen(path, "a") : NULL;
     if (!f) return;
-    fprintf(f, "%s,%s,%ld,%ld,%ld,%s,%s\n", check, class_name, cases_run, judged, wrong, text, unit);
+    fprintf(f, "%s,%s,%ld,%ld,%ld,%s,%s\n", check, kind, cases_run, judged, wrong, text, unit);
     fclose(f);
 }
 

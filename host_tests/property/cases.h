@@ -19,8 +19,8 @@ cases cases_of(const char *name, long slice, long whole);
 int cases_next(cases *c);
 
 /* Prints a figure, and appends it to the file EW_FIGURES, if set, as a CSV row of
- * check, class, cases, judged (pixels or fragments), wrong, value, unit. Value is "na" where NAN. */
-void cases_figure(const char *check, const char *class_name, long cases_run, long judged, long wrong, double value,
+ * check, kind, cases, judged (pixels or fragments), wrong, value, unit. Value is "na" where NAN. */
+void cases_figure(const char *check, const char *kind, long cases_run, long judged, long wrong, double value,
                   const char *unit);
 
 /* One of n, and a number from low to high. */

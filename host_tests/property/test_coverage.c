@@ -56,7 +56,8 @@ static void choose(uint16_t texels[4], ew_rect *scissor, int *sides)
 {
     int way = (int)pick(WAYS);
     const ew_texture texture = { .texels = texels, .width = 2, .height = 2 };
-    const ew_target target = { .colour = colour, .depth = ways[way].with_depth ? depth : NULL, .width = width, .height = height, .stride = width };
+    const ew_target target = { .colour = colour, .depth = ways[way].with_depth ? depth : NULL, .width = width,
+                               .height = height, .stride = width };
     assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
     if (++tag == 0) {
         memset(colour_memory, 0, sizeof colour_memory);
@@ -70,8 +71,10 @@ static void choose(uint16_t texels[4], ew_rect *scissor, int *sides)
     assert_int_equal(ew_raster_set_material(&raster, &material), EW_OK);
     *scissor = raster.scissor;
     if (pick(8)) return;
-    scissor->x0 = (uint16_t)pick(width + 1u), scissor->x1 = (uint16_t)(scissor->x0 + pick(width + 1u - scissor->x0));
-    scissor->y0 = (uint16_t)pick(height + 1u), scissor->y1 = (uint16_t)(scissor->y0 + pick(height + 1u - scissor->y0));
+    scissor->x0 = (uint16_t)pick(width + 1u);
+    scissor->y0 = (uint16_t)pick(height + 1u);
+    scissor->x1 = (uint16_t)(scissor->x0 + pick(width + 1u - scissor->x0));
+    scissor->y1 = (uint16_t)(scissor->y0 + pick(height + 1u - scissor->y0));
     assert_int_equal(ew_raster_set_scissor(&raster, scissor), EW_OK);
 }
 

@@ -10,7 +10,7 @@
 #include "edgewalk/raster.h"
 #include "triangles.h"
 
-enum { W = 32, H = 32, PX = 4096, STEP = PX >> EW_SUBPIXEL_BITS, CORNERS = 1100, TRIANGLES = 2100, BORDER = 1100 };
+enum { W = 32, H = 32, PX = 4096, CORNERS = 1100, TRIANGLES = 2100, BORDER = 1100 };
 
 static uint16_t colour[W * H];
 static uint16_t hits[W * H];
@@ -113,7 +113,8 @@ static long hold(const char *what, long number)
     draw();
     for (int p = 0; p < W * H; p++) {
         if (hits[p] != cover_at(&whole, p % W, p / W)) {
-            fail_msg("pixel %d %d: %d hits, the union has %d", p % W, p / W, hits[p], cover_at(&whole, p % W, p / W));
+            fail_msg("pixel %d %d: %d hits, the union has %d", p % W, p / W, hits[p],
+                     cover_at(&whole, p % W, p / W));
         }
     }
     return cover_count(&whole);
@@ -147,8 +148,8 @@ static void add_net(int columns, int rows, double x0, double y0, double x_step, 
 
 static void make_grid(void)
 {
-    add_net(1 + (int)pick(7), 1 + (int)pick(7), uniform(-20, 20), uniform(-20, 20), uniform(0.2, 12), uniform(0.2, 12),
-            uniform(0, 0.3));
+    add_net(1 + (int)pick(7), 1 + (int)pick(7), uniform(-20, 20), uniform(-20, 20), uniform(0.2, 12),
+            uniform(0.2, 12), uniform(0, 0.3));
 }
 
 /* Triangles of less than a pixel. */
@@ -163,7 +164,8 @@ static void make_dust(void)
 static void make_fan(void)
 {
     int spokes = 3 + (int)pick(pick(20) ? 40 : 998);
-    double x = uniform(-4, 36), y = uniform(-4, 36), least = pow(2, uniform(-2, 6)), most = least * uniform(1, 4);
+    double x = uniform(-4, 36), y = uniform(-4, 36);
+    double least = pow(2, uniform(-2, 6)), most = least * uniform(1, 4);
     int hub = add_corner(x, y);
     for (int i = 0; i < spokes; i++) {
         double angle = 2 * acos(-1.0) * (i + uniform(-0.4, 0.4)) / spokes, r = uniform(least, most);
@@ -230,9 +232,11 @@ static void t_junctions_are_counted(void **state)
     long cracks = 0, twice = 0, judged = 0, junctions = 0, on_the_line = 0;
     for (cases c = cases_of("T-junctions", 2000, 100000); cases_next(&c);) {
         begin();
-        double ax = uniform(-8, 16), ay = uniform(-8, 40), bx = uniform(16, 40), by = uniform(-8, 40), s = uniform(0.1, 0.9);
+        double ax = uniform(-8, 16), ay = uniform(-8, 40), bx = uniform(16, 40), by = uniform(-8, 40);
+        double s = uniform(0.1, 0.9);
         int a = add_corner(ax, ay), b = add_corner(bx, by), m = add_corner(ax + s * (bx - ax), ay + s * (by - ay));
-        int up = add_corner(uniform(8, 24), fmin(ay, by) - uniform(1, 30)), down = add_corner(uniform(8, 24), fmax(ay, by) + uniform(1, 30));
+        int up = add_corner(uniform(8, 24), fmin(ay, by) - uniform(1, 30));
+        int down = add_corner(uniform(8, 24), fmax(ay, by) + uniform(1, 30));
         add_triangle(a, b, up);
         add_triangle(a, down, m), add_triangle(m, down, b);
         add_border(a), add_border(down), add_border(b), add_border(up);

@@ -1,17 +1,22 @@
 #include "triangles.h"
 
 #include <math.h>
+#include <stdio.h>
 
 #include "cases.h"
 
-const char *const triangle_kind_name[KIND_COUNT] = { "ordinary", "sliver",  "one pixel",       "zero area",
-                                                     "tiny",     "huge",    "along rows",      "corners on centres",
-                                                     "edges through centres" };
+const char *const triangle_kind_name[KIND_COUNT] = {
+    "ordinary", "sliver", "one pixel", "zero area", "tiny", "huge", "along rows", "corners on centres",
+    "edges through centres"
+};
 
 enum { PX = 4096, STEP = PX >> EW_SUBPIXEL_BITS }; /* q20.12 of a pixel, of a snapped unit */
 static const int32_t GUARD_Q = EW_GUARD_PX * PX;
 
-static int32_t within_guard(int64_t a) { return (int32_t)(a > GUARD_Q ? GUARD_Q : a < -GUARD_Q ? -GUARD_Q : a); }
+static int32_t within_guard(int64_t a)
+{
+    return (int32_t)(a > GUARD_Q ? GUARD_Q : a < -GUARD_Q ? -GUARD_Q : a);
+}
 
 /* -8 to size + 8 px, on a grid of `step`. */
 static int32_t place(int size, int32_t step)
@@ -32,7 +37,8 @@ static int32_t far_away(void)
 
 static void sliver(ew_raster_vertex v[3], int width, int height)
 {
-    double angle = uniform(0, 2 * acos(-1.0)), length = PX * pow(2 * (width > height ? width : height), uniform(0, 1));
+    double angle = uniform(0, 2 * acos(-1.0));
+    double length = PX * pow(2 * (width > height ? width : height), uniform(0, 1));
     if (pick(4) == 0) angle = acos(-1.0) / 2 * pick(4);
     int32_t dx = (int32_t)(length * cos(angle)), dy = (int32_t)(length * sin(angle)), thick = STEP << pick(2);
     double along = pick(4) ? uniform(0, 1) : uniform(-1, 2);
@@ -64,7 +70,8 @@ static void zero_area(ew_raster_vertex v[3])
 static void through(ew_raster_vertex v[3])
 {
     int32_t x = v[0].x - (v[0].x & (PX - 1)) + PX / 2, y = v[0].y - (v[0].y & (PX - 1)) + PX / 2;
-    int32_t dx = somewhere(600) * STEP, dy = somewhere(600) * STEP, back = (int32_t)pick(20), on = (int32_t)pick(20);
+    int32_t dx = somewhere(600) * STEP, dy = somewhere(600) * STEP;
+    int32_t back = (int32_t)pick(20), on = (int32_t)pick(20);
     v[0].x = x - back * dx, v[0].y = y - back * dy;
     v[1].x = x + on * dx, v[1].y = y + on * dy;
 }
@@ -115,9 +122,18 @@ void triangle_snapped(int64_t sx[3], int64_t sy[3], const ew_raster_vertex v[3])
     for (int i = 0; i < 3; i++) sx[i] = snapped(v[i].x), sy[i] = snapped(v[i].y);
 }
 
+const char *triangle_row(const ew_raster_vertex v[3])
+{
+    static char row[3][100], all[sizeof row + 16];
+    for (int i = 0; i < 3; i++) {
+        snprintf(row[i], sizeof row[i], "{ .x = %d, .y = %d, .w = %u, .u = %d, .v = %d }", v[i].x, v[i].y, v[i].w, v[i].u,
+                 v[i].v);
+    }
+    snprintf(all, sizeof all, "{ %s, %s, %s }", row[0], row[1], row[2]);
+    return all;
+}
+
 void triangle_context(const char *what, long number, const ew_raster_vertex v[3])
 {
-    test_context("EW_CASE=%ld, %s: { { %d, %d, %uu, %d, %d }, { %d, %d, %uu, %d, %d }, { %d, %d, %uu, %d, %d } }", number,
-                 what, v[0].x, v[0].y, v[0].w, v[0].u, v[0].v, v[1].x, v[1].y, v[1].w, v[1].u, v[1].v, v[2].x, v[2].y,
-                 v[2].w, v[2].u, v[2].v);
+    test_context("EW_CASE=%ld, %s: %s", number, what, triangle_row(v));
 }

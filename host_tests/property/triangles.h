@@ -25,6 +25,9 @@ void triangle_place(ew_raster_vertex v[3], triangle_kind kind, int width, int he
 /* The corners as the contract snaps them: floor(2^S x + 1/2), by integer division. */
 void triangle_snapped(int64_t sx[3], int64_t sy[3], const ew_raster_vertex v[3]);
 
+/* The triangle as a row of a list of cases: static memory, until the next call. */
+const char *triangle_row(const ew_raster_vertex v[3]);
+
 /* Remembers the triangle as the case at hand, ready to be pasted into a list of cases. */
 void triangle_context(const char *what, long number, const ew_raster_vertex v[3]);
 
