@@ -305,7 +305,7 @@ static void any_bits(void **state)
         free(now.texels);
         now.texels = NULL;
     }
-    assert_true(drawn > calls / 8); /* much is refused, but not all */
+    assert_true(drawn > calls / 8 || cases_alone()); /* much is refused, but not all */
     cases_figure("any bits", "calls", calls, drawn, 0, NAN, "");
 }
 

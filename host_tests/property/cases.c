@@ -18,6 +18,8 @@ cases cases_of(const char *name, long slice, long whole)
     return c;
 }
 
+int cases_alone(void) { return getenv("EW_CASE") != NULL; }
+
 int cases_next(cases *c)
 {
     long done = ++c->number - c->begin, all = c->end - c->begin;

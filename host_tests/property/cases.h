@@ -17,6 +17,8 @@ typedef struct cases {
  * tenth of that. On a terminal it shows how far it is. */
 cases cases_of(const char *name, long slice, long whole);
 int cases_next(cases *c);
+/* Whether a single case was asked for, which proves nothing about the rest. */
+int cases_alone(void);
 
 /* Prints a figure, and appends it to the file EW_FIGURES, if set, as a CSV row of
  * check, kind, cases, judged (pixels or fragments), wrong, value, unit. Value is "na" where NAN. */

@@ -239,7 +239,7 @@ static void end(const char *name)
                      "beyond the disc");
     }
     test_context("%s: %ld of %ld promises broken", name, broken, judged);
-    assert_true(judged > 0);
+    assert_true(judged > 0 || cases_alone());
     assert_int_equal(broken, 0);
 }
 
@@ -371,7 +371,7 @@ static void through_the_near_plane(void **state)
         test_context("EW_CASE=%ld %s: %s", c.number, name, triangle.row);
         if (draw_and_judge_mesh(&geometry, &mesh, &truth, c.number) && behind) cut++;
     }
-    assert_true(cut > 0);
+    assert_true(cut > 0 || cases_alone());
     end(name);
 }
 

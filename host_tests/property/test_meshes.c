@@ -267,7 +267,7 @@ static void t_junctions_are_counted(void **state)
     test_context("%ld junctions, %ld on the line", junctions, on_the_line);
     cases_figure("T-junctions", "left out", junctions, judged, 0, (double)cracks, "px");
     cases_figure("T-junctions", "hit twice", junctions, judged, 0, (double)twice, "px");
-    assert_true(on_the_line > 0 && cracks + twice > 0); /* both happen, or this counts nothing */
+    assert_true((on_the_line > 0 && cracks + twice > 0) || cases_alone()); /* both happen, or this counts nothing */
 }
 
 int main(void)

@@ -78,18 +78,25 @@ static double distance_to(const exact_forms *f, const exact_form *a, long double
     return (double)(hypotl(f->w.at * dy - at * f->w.dy, at * f->w.dx - f->w.at * dx) / fabsl(cross));
 }
 
+/* The nearest place of a value from low to high, either of which may be the same and both of
+ * which are known modulo the period: the next ones above and below count, since u may grow
+ * faster on one side than on the other. */
+static double nearest_of(const exact_forms *f, const exact_form *a, long double low, long double high, double period)
+{
+    long double here = a->at / f->w.at, down = floorl((low - here) / period) * period;
+    low -= down, high -= down; /* low: the first at or above here */
+    if (low - here <= 0 || high - period >= here) return 0;
+    return fmin(distance_to(f, a, low), distance_to(f, a, high - period));
+}
+
 double exact_radius(const exact_forms *f, const exact_form *attribute, double drawn, double period, double e)
 {
-    long double here = attribute->at / f->w.at, off = remainderl(drawn - here, period);
-    if (fabsl(off) <= e) return 0;
-    return distance_to(f, attribute, here + off - (off > 0 ? e : -e));
+    return nearest_of(f, attribute, drawn - (long double)e, drawn + (long double)e, period);
 }
 
 double exact_texel_radius(const exact_forms *f, const exact_form *attribute, int texel, int period, double e)
 {
-    long double here = attribute->at / f->w.at, off = remainderl(texel + 0.5L - here, period); /* to the texel's middle */
-    if (fabsl(off) <= 0.5L + e) return 0;
-    return distance_to(f, attribute, here + off - (off > 0 ? 0.5L + e : -0.5L - e));
+    return nearest_of(f, attribute, texel - (long double)e, texel + 1.0L + e, period);
 }
 
 double exact_depth_off(const exact_forms *f, uint16_t stored, double radius)
