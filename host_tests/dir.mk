@@ -67,6 +67,11 @@ $(T)/test_fill-without-%: host_tests/unit/test_fill.c host_tests/unit/unit.c hos
 	@$(CC) $(HOST_CFLAGS) -Werror -DSHARE=8 -fsanitize=undefined -fno-sanitize-recover=all -o $@ $(filter %.c,$^) -lcmocka -lm \
 	  $(patsubst %,-DEW_WITH_%=0,$(if $(filter EVERYTHING,$*),$(FILL_PARTS),$*))
 
+include host_tests/property/dir.mk
+include host_tests/mesa/dir.mk
+include host_tests/fuzz/dir.mk
+include host_tests/static/dir.mk
+
 # ---- goals ----
 accuracy: $(T)/test_accuracy  ## the referee's figures for the standard scenes, rung by rung
 	@EW_PRINT=1 $<
@@ -80,9 +85,9 @@ test:  ## set up what is missing and run every host test
 	@SETUP=$(SETUP) tools/setup/setup.sh test
 	@$(MAKE) --no-print-directory test-programs
 	@$(MAKE) --no-print-directory MODE=sanitize sanitize-programs
-	@EW_BIN=$(BIN) $(RUN) $(UNIT_TESTS) $(CONFIG_TESTS) $(CLI_TESTS) \
+	@EW_BIN=$(BIN) $(RUN) $(UNIT_TESTS) $(PROPERTY_TESTS) $(MESA_TESTS) $(CONFIG_TESTS) $(STATIC_TESTS) $(CLI_TESTS) \
 	  $(patsubst build/$(MODE)/%,build/sanitize/%,$(SANITIZE_TESTS))
-SANITIZE_TESTS := $(filter-out $(T)/test_recip $(T)/test_readme,$(UNIT_TESTS))
-test-programs: programs $(BIN)/ew-accuracy $(UNIT_TESTS) $(CONFIG_TESTS) check-tables
+SANITIZE_TESTS := $(filter-out $(T)/test_recip $(T)/test_readme,$(UNIT_TESTS)) $(T)/test_any_bits
+test-programs: programs $(BIN)/ew-accuracy $(UNIT_TESTS) $(PROPERTY_TESTS) $(MESA_TESTS) $(CONFIG_TESTS) check-tables
 sanitize-programs: $(SANITIZE_TESTS)
 .PHONY: test test-programs sanitize-programs

@@ -11,6 +11,6 @@ include tools/stream/dir.mk
 include tools/lab/dir.mk
 include tools/cycles/dir.mk
 
-setup-demo setup-test setup-lab setup-count setup-cross: setup-%:  ## install the packages of that goal
+setup-demo setup-test setup-lab setup-count setup-cross setup-lint: setup-%:  ## install the packages of that goal
 	@SETUP=$(SETUP) tools/setup/setup.sh $*
-.PHONY: setup-demo setup-test setup-lab setup-count setup-cross
+.PHONY: setup-demo setup-test setup-lab setup-count setup-cross setup-lint

@@ -7,10 +7,11 @@ import unittest
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 LIBRARY = os.path.join(os.path.dirname(os.environ.get("EW_BIN", "build/release/bin")), "libedgewalk.a")
-CROSS = [("arm-none-eabi-", ["-mcpu=cortex-m0plus", "-mthumb"], r"__(aeabi|gnu_thumb1)_\w+|__clzsi2"),
-         ("arm-none-eabi-", ["-mcpu=cortex-m3", "-mthumb"], r"__aeabi_\w+|__clzsi2"),
+AEABI = r"__aeabi_(u?idiv(mod)?|u?ldivmod|lmul|llsl|llsr|lasr|u?lcmp)|__clzsi2"  # integers only
+CROSS = [("arm-none-eabi-", ["-mcpu=cortex-m0plus", "-mthumb"], AEABI + r"|__gnu_thumb1_\w+"),
+         ("arm-none-eabi-", ["-mcpu=cortex-m3", "-mthumb"], AEABI),
          ("riscv64-unknown-elf-", ["-march=rv32imc", "-mabi=ilp32"], r"__\w+[sd]i\d"),
-         ("avr-", ["-mmcu=atmega2560"], r"__\w+|memmove")]  # where int has 16 bits
+         ("avr-", ["-mmcu=atmega2560"], r"__(?!\w*[sd]f)\w+|memmove")]  # where int has 16 bits
 
 
 def symbols(archive, nm="nm"):

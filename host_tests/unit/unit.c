@@ -16,6 +16,12 @@ uint32_t test_random(void)
     return (uint32_t)((z ^ z >> 31) >> 32);
 }
 
+void test_restart(uint64_t number)
+{
+    /* odd factors spread neighbouring seeds and numbers over all states */
+    random_state = seed * UINT64_C(0xD1342543DE82EF95) + number * UINT64_C(0xA0761D6478BD642F);
+}
+
 int32_t test_awkward(void)
 {
     uint32_t r = test_random(), power = 1u << (r >> 3 & 31);

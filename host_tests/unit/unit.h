@@ -12,6 +12,8 @@
 uint32_t test_random(void);
 /* Numbers near the ends, near powers of two, and any. */
 int32_t test_awkward(void);
+/* Restarts the generator for one of many numbered cases, so that it can be drawn alone. */
+void test_restart(uint64_t number);
 /* Remembers the case at hand: the last one is printed, with the seed, behind the test's
  * own output, and host_tests/run.py shows that of a test that failed. */
 void test_context(const char *format, ...) __attribute__((format(printf, 1, 2)));

@@ -1,0 +1,383 @@
+/* The promise of docs/error-bound.md and of the depth in docs/conventions.md, on random
+ * triangles: for each tolerance t, every drawn u and v is an exact one at most t + 1/256 px
+ * away, widened by 1/64 texel; every depth is within 1 unit of an exact one at most
+ * 1/256 px away. Of large triangles some fragments are judged. */
+#include "cases.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "../reference/exact.h"
+#include "../reference/scenes.h"
+#include "edgewalk/geometry.h"
+#include "triangles.h"
+
+enum { PIXELS = 4096 * 4, JUDGED = 64, PX = 4096, TEXTURE_MOST = 2048 };
+
+static const double E = 1.0 / 64, SNAP = 1.0 / 256, NEAR = 0.25;
+static uint16_t colour[PIXELS], depth[PIXELS], texels[TEXTURE_MOST * TEXTURE_MOST];
+static ew_raster raster;
+static ew_texture texture;
+static uint16_t width, height;
+
+/* ---- what was drawn ---- */
+
+typedef struct fragment {
+    uint16_t x, y, depth;
+    ew_q20_12 u, v;
+} fragment;
+static fragment drawn[2 * PIXELS]; /* clipped triangles may in theory overlap */
+static int drawn_count, drawn_rung;
+
+void ew_trace_triangle(const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *c, int rung)
+{
+    (void)a, (void)b, (void)c;
+    drawn_rung = rung;
+}
+
+void ew_trace_fragment(uint16_t x, uint16_t y, uint16_t d, ew_q20_12 u, ew_q20_12 v)
+{
+    if (drawn_count == 2 * PIXELS) return;
+    fragment f = { x, y, d, u, v };
+    drawn[drawn_count++] = f;
+}
+
+/* ---- ways to draw, and how they did ---- */
+
+typedef struct figures {
+    long triangles, judged, broken, depth_judged, broken_depth;
+    long beyond, beyond_off; /* fragments of which u and v are not promised, and how many do not keep it */
+    double disp_max, depth_max;
+    long shown; /* the last case of which a row was printed */
+} figures;
+
+typedef struct way {
+    const char *name;
+    ew_rung rung;
+    uint16_t tolerance;
+    double reach; /* texels between corners up to which it promises something */
+    figures seen;
+} way;
+
+static way ways[] = {
+    { .name = "auto 1 px", .rung = EW_RUNG_AUTO, .tolerance = 16, .reach = 32768 },
+    { .name = "auto 1/2 px", .rung = EW_RUNG_AUTO, .tolerance = 8, .reach = 32768 },
+    { .name = "auto 1/4 px", .rung = EW_RUNG_AUTO, .tolerance = 4, .reach = 32768 },
+    { .name = "auto 1/8 px", .rung = EW_RUNG_AUTO, .tolerance = 2, .reach = 32768 },
+    { .name = "auto 1/16 px", .rung = EW_RUNG_AUTO, .tolerance = 1, .reach = 32768 },
+    { .name = "auto 0", .rung = EW_RUNG_AUTO, .tolerance = 0, .reach = 32768 },
+    { .name = "runs 1/4 px", .rung = EW_RUNG_RUNS, .tolerance = 4, .reach = 32768 },
+    { .name = "table", .rung = EW_RUNG_TABLE, .tolerance = 0, .reach = 512 },
+    { .name = "exact", .rung = EW_RUNG_EXACT, .tolerance = 0, .reach = 32768 },
+};
+enum { WAYS = sizeof ways / sizeof *ways };
+
+static long rows_shown;
+
+/* The triangle at hand: as a row of a list of cases, and what its limits are made of. */
+static struct {
+    char row[400];
+    double reach;  /* texels between its corners, the most       */
+    double w_most; /* the largest near/z of its corners          */
+} triangle;
+
+/* The first broken promise of a case, ready for a list of cases. */
+static void show(way *w, const char *what, long number, const fragment *f, double value, double exact, double off)
+{
+    if (w->seen.shown == number || rows_shown++ >= 20) return;
+    w->seen.shown = number;
+    printf("# %s\n", triangle.row);
+    printf("# BROKEN EW_CASE=%ld %s, %s: rung drawn %d, %d x %d, texture %d x %d, pixel %d %d: drawn %.5f, exact %.5f, "
+           "off by %.5f px or units\n", number, w->name, what, drawn_rung, width, height, texture.width, texture.height,
+           f->x, f->y, value, exact, off);
+}
+
+/* docs/error-bound.md, "where it stops holding": 1/z has 31 fraction bits, u/z and v/z have
+ * 29 at the nearest corner, for differences of 128 texels or more. */
+static int promised(const exact_forms *at)
+{
+    double w = (double)at->w.at, g = triangle.w_most / w;
+    double off = fmax(triangle.reach, 128) * ldexp(g, -27) + triangle.reach * ldexp(1 / w, -31);
+    return w >= 1.0 / 65536 && off <= 1.0 / 128;
+}
+
+/* Judges one fragment. */
+static void judge(way *w, long number, const fragment *f, const exact_forms *at)
+{
+    double limit = w->tolerance / 16.0 + SNAP, off = exact_depth_off(at, f->depth, SNAP);
+    double ru = exact_radius(at, &at->u, f->u / 4096.0, texture.width, E);
+    double rv = exact_radius(at, &at->v, f->v / 4096.0, texture.height, E), r = fmax(ru, rv);
+    if (promised(at)) {
+        w->seen.judged++;
+        w->seen.disp_max = fmax(w->seen.disp_max, r);
+        if (r > limit) {
+            w->seen.broken++;
+            if (ru >= rv) show(w, "u", number, f, f->u / 4096.0, exact_value(at, &at->u), ru);
+            else show(w, "v", number, f, f->v / 4096.0, exact_value(at, &at->v), rv);
+        }
+    } else {
+        w->seen.beyond++;
+        w->seen.beyond_off += r > limit;
+    }
+    if (isnan(off)) return;
+    w->seen.depth_judged++;
+    w->seen.depth_max = fmax(w->seen.depth_max, off);
+    if (off > 1) {
+        w->seen.broken_depth++;
+        show(w, "depth", number, f, f->depth + 0.5, (double)(65536 * at->w.at), off);
+    }
+}
+
+static void use(const way *w)
+{
+    const ew_material material = { .texture = &texture, .tolerance = w->tolerance, .rung = (uint8_t)w->rung,
+                                   .flags = EW_DOUBLE_SIDED };
+    assert_int_equal(ew_raster_set_material(&raster, &material), EW_OK);
+    drawn_count = 0;
+}
+
+static void picture(uint16_t w, uint16_t h)
+{
+    const ew_target target = { .colour = colour, .depth = depth, .width = w, .height = h, .stride = w };
+    static const uint16_t sizes[5][2] = { { 256, 256 }, { 2048, 2048 }, { 2048, 32 }, { 64, 1024 }, { 256, 128 } };
+    uint32_t size = pick(5);
+    width = w, height = h;
+    texture = (ew_texture){ .texels = texels, .width = sizes[size][0], .height = sizes[size][1] };
+    memset(depth, 0, 2u * w * h);
+    assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
+}
+
+/* ---- triangles of the raster layer ---- */
+
+/* 1/z of the corners: far apart, alike, or a plane that the eye grazes. */
+static void choose_depths(ew_raster_vertex v[3], double ratio)
+{
+    double w[3], most = 0, nearest = pick(2) ? uniform(0.1, 1) : pow(2, uniform(-16, 0));
+    double angle = uniform(0, 2 * acos(-1.0)), alike = pow(10, uniform(-4, 0));
+    int kind = (int)pick(3);
+    for (int i = 0; i < 3; i++) {
+        w[i] = kind == 0 ? pow(ratio, -uniform(0, 1)) : 1 - alike * uniform(0, 1);
+        if (kind == 2) w[i] = 1e-9 + fabs(cos(angle) * v[i].x + sin(angle) * v[i].y); /* 0 at the horizon */
+        most = fmax(most, w[i]);
+    }
+    for (int i = 0; i < 3; i++) v[i].w = (uint32_t)fmax(1, floor(ldexp(w[i] / most * nearest, 31)));
+}
+
+/* u and v of the corners, up to `reach` texels apart, near 0 or far from it. */
+static void choose_texels(ew_raster_vertex v[3], double reach)
+{
+    double far_off = pick(4) ? 0 : uniform(-1, 1) * (262143 - reach); /* |u| < 2^18 texels */
+    int only = (int)pick(8);
+    for (int i = 0; i < 3; i++) {
+        double u = uniform(0, reach), t = uniform(0, reach);
+        if (only < 3) u = i == only ? reach : 0, t = 0;
+        v[i].u = (int32_t)(PX * (u + far_off)), v[i].v = (int32_t)(PX * (t + far_off));
+    }
+}
+
+static void remember(const ew_raster_vertex v[3])
+{
+    triangle.reach = triangle.w_most = 0;
+    for (int i = 0; i < 3; i++) {
+        double far = fmax(fabs((double)v[i].u - v[0].u), fabs((double)v[i].v - v[0].v)) / PX;
+        triangle.reach = fmax(triangle.reach, far);
+        triangle.w_most = fmax(triangle.w_most, ldexp(v[i].w, -31));
+    }
+    snprintf(triangle.row, sizeof triangle.row, "%s", triangle_row(v));
+}
+
+/* Judges what was drawn: all of a few fragments, some of many. */
+static void judge_drawn(way *w, long number, const exact_corners *corners, const ref_triangle *truth)
+{
+    int all = drawn_count <= JUDGED;
+    w->seen.triangles++;
+    for (int i = 0; i < (all ? drawn_count : JUDGED); i++) {
+        const fragment *f = &drawn[all ? i : (int)pick((uint32_t)drawn_count)];
+        exact_forms at = corners ? exact_from_corners(corners, f->x, f->y) : exact_from_truth(truth, f->x, f->y);
+        judge(w, number, f, &at);
+    }
+}
+
+/* Draws a triangle in every way and judges it. */
+static void draw_and_judge(const ew_raster_vertex v[3], long number)
+{
+    exact_corners corners;
+    if (!exact_corners_init(&corners, v)) return; /* only its snapped corners may have an area */
+    remember(v);
+    for (int k = 0; k < WAYS; k++) {
+        if (triangle.reach > ways[k].reach) continue;
+        use(&ways[k]);
+        int result = ew_raster_triangle(&raster, &v[0], &v[1], &v[2]);
+        assert_true(result >= 0);
+        if (!result) return;
+        judge_drawn(&ways[k], number, &corners, NULL);
+    }
+}
+
+static void begin(void)
+{
+    rows_shown = 0;
+    for (int k = 0; k < WAYS; k++) {
+        ways[k].seen = (figures){ .shown = -1 };
+    }
+}
+
+static void end(const char *name)
+{
+    char text[64];
+    long broken = 0, judged = 0;
+    for (int k = 0; k < WAYS; k++) {
+        const way *w = &ways[k];
+        broken += w->seen.broken + w->seen.broken_depth;
+        judged += w->seen.judged;
+        snprintf(text, sizeof text, "%s: %s", name, w->name);
+        cases_figure("displacement", text, w->seen.triangles, w->seen.judged, w->seen.broken, w->seen.disp_max, "px");
+        cases_figure("depth", text, w->seen.triangles, w->seen.depth_judged, w->seen.broken_depth, w->seen.depth_max, "units");
+        if (!w->seen.beyond) continue;
+        cases_figure("not promised", text, w->seen.triangles, w->seen.beyond, 0, (double)w->seen.beyond_off,
+                     "beyond the disc");
+    }
+    test_context("%s: %ld of %ld promises broken", name, broken, judged);
+    assert_true(judged > 0 || cases_alone());
+    assert_int_equal(broken, 0);
+}
+
+/* Kinds of triangles crossed with depth ratios up to `ratio` and corners up to `reach` texels apart. */
+static void run(const char *name, double ratio, double reach, long slice, long whole)
+{
+    static const triangle_kind kinds[7] = { KIND_ORDINARY, KIND_ORDINARY, KIND_SLIVER, KIND_TINY,
+                                            KIND_HUGE, KIND_AXIS, KIND_CENTRES };
+    begin();
+    for (cases c = cases_of(name, slice, whole); cases_next(&c);) {
+        ew_raster_vertex v[3];
+        memset(v, 0, sizeof v);
+        if (pick(16) == 0) picture(4096, 4);
+        else if (pick(16) == 0) picture(4, 4096);
+        else picture(64, 48);
+        triangle_place(v, kinds[pick(7)], width, height);
+        choose_depths(v, pow(ratio, uniform(0, 1)));
+        choose_texels(v, pow(reach, uniform(0, 1)));
+        triangle_context(name, c.number, v);
+        draw_and_judge(v, c.number);
+    }
+    end(name);
+}
+
+static void ordinary(void **state)
+{
+    (void)state;
+    run("ratio to 100, 512 texels", 100, 512, 3000, 250000);
+}
+
+static void any_ratio(void **state)
+{
+    (void)state;
+    run("ratio to 10^6, 512 texels", 1e6, 512, 3000, 250000);
+}
+
+static void any_reach(void **state)
+{
+    (void)state;
+    run("ratio to 10^6, 32767 texels", 1e6, 32767, 3000, 250000);
+}
+
+/* A triangle that grows by thousandths of a texel per pixel: the tangent's slope was
+ * (du/z - u dw) / w with u dw rounded down to a whole unit of u/z, 1/1900 texel here, for each of up
+ * to 32 pixels. */
+static void slope_of_small_differences(void **state)
+{
+    (void)state;
+    static const ew_raster_vertex v[3] = {
+        { .x = -46211013, .y = -1337, .w = 417753, .u = -401734484, .v = -401728696 },
+        { .x = 189745112, .y = -274, .w = 132550, .u = -401738610, .v = -401727967 },
+        { .x = 536870912, .y = 536870912, .w = 1705226289, .u = -401727236, .v = -401736685 }
+    };
+    begin();
+    picture(64, 48);
+    draw_and_judge(v, 0);
+    end("slope of small differences");
+}
+
+/* ---- triangles of the geometry layer ---- */
+
+/* Corners near the eye, before and behind the near plane, and far away, in 1/512 unit; u and v
+ * with `bits` fraction bits. Returns how many are behind. */
+static int choose_corners(ew_vertex16 v[3], ref_corner exact[3], int bits)
+{
+    double size = pow(2, uniform(8, 14.9)), deep = pow(2, uniform(7, 14.9));
+    int behind = 0, at = 0;
+    triangle.reach = 0;
+    triangle.w_most = 1;
+    for (int i = 0; i < 3; i++) {
+        v[i].x = (int16_t)uniform(-size, size), v[i].y = (int16_t)uniform(-size, size);
+        v[i].z = (int16_t)(uniform(-1, 0.3) * (pick(2) ? deep : 512));
+        v[i].u = (int16_t)test_random(), v[i].v = (int16_t)test_random();
+        exact[i].x = v[i].x / 512.0, exact[i].y = v[i].y / 512.0, exact[i].z = -v[i].z / 512.0;
+        exact[i].u = ldexp(v[i].u, -bits), exact[i].v = ldexp(v[i].v, -bits);
+        behind += exact[i].z < NEAR;
+        triangle.reach = fmax(triangle.reach, fabs(exact[i].u - exact[0].u));
+        triangle.reach = fmax(triangle.reach, fabs(exact[i].v - exact[0].v));
+        at += snprintf(triangle.row + at, sizeof triangle.row - (size_t)at, "{ %d, %d, %d, %d, %d }, ", v[i].x, v[i].y,
+                       v[i].z, v[i].u, v[i].v);
+    }
+    snprintf(triangle.row + at, sizeof triangle.row - (size_t)at, "uv fraction bits %d", bits);
+    return behind;
+}
+
+/* Draws in every way and judges. Returns how many ways reached a pixel. */
+static int draw_and_judge_mesh(ew_geometry *geometry, const ew_mesh *mesh, const ref_triangle *truth, long number)
+{
+    int drawn_ways = 0;
+    for (int k = 0; k < WAYS; k++) {
+        if (triangle.reach > ways[k].reach) continue;
+        use(&ways[k]);
+        int32_t result = ew_draw_triangles(geometry, mesh);
+        assert_true(result >= 0);
+        if (result == 0) break;
+        judge_drawn(&ways[k], number, NULL, truth);
+        drawn_ways++;
+    }
+    return drawn_ways;
+}
+
+static void through_the_near_plane(void **state)
+{
+    (void)state;
+    const char *name = "through the near plane";
+    const ew_projection projection = { 65536, 65536, { 1 << 29, -1 } };
+    const ew_viewport viewport = { 0, -8, 64, 64 };
+    const ref_camera eye = { 1, 1, NEAR, 0, -8, 64, 64 };
+    static const uint16_t indices[3] = { 0, 1, 2 };
+    ew_mat34 model_view;
+    double exact[3][4];
+    long cut = 0;
+    standard_model_view(&model_view, exact);
+    begin();
+    for (cases c = cases_of(name, 3000, 250000); cases_next(&c);) {
+        ew_geometry geometry;
+        ew_vertex16 v[3];
+        ew_screen_vertex screen[3];
+        ref_corner corner[3];
+        ref_triangle truth;
+        int bits = 1 + (int)pick(8), behind = choose_corners(v, corner, bits);
+        const ew_mesh mesh = { .vertices = v, .screen = screen, .indices = indices, .index_count = 3,
+                               .uv_fraction_bits = (uint8_t)bits };
+        picture(64, 48);
+        if (!ref_triangle_init(&truth, &eye, corner)) continue;
+        ew_geometry_init(&geometry, &raster);
+        assert_int_equal(ew_transform_set(&geometry.transform, &projection, &model_view, &viewport), EW_OK);
+        ew_transform_vertices(&geometry.transform, v, 3, screen);
+        test_context("EW_CASE=%ld %s: %s", c.number, name, triangle.row);
+        if (draw_and_judge_mesh(&geometry, &mesh, &truth, c.number) && behind) cut++;
+    }
+    assert_true(cut > 0 || cases_alone());
+    end(name);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = { TEST(ordinary), TEST(any_ratio), TEST(any_reach),
+                                        TEST(slope_of_small_differences), TEST(through_the_near_plane) };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
