@@ -8,7 +8,7 @@ set -eu
 # What each goal needs, by the names of Debian 12.
 demo="gcc g++ libc6-dev pkg-config python3 libtinygltf-dev libhidapi-dev libgpiod-dev libpng-dev"
 test="$demo libcmocka-dev assimp-testmodels"
-count="gcc libc6-dev python3 valgrind gcc-arm-none-eabi qemu-system-arm"
+count="$demo valgrind gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm qemu-system-misc"
 cross="gcc-arm-none-eabi gcc-riscv64-unknown-elf gcc-avr"
 lab="$demo libusb-1.0-0-dev gpiod qemu-system-x86 busybox-static cpio kmod xz-utils"
 
