@@ -1,6 +1,6 @@
 #!/bin/sh
 # setup.sh GOAL: installs the distribution's packages that `make GOAL` needs and that are
-# missing. GOAL: demo, test, lab, count or cross (the compilers that test_library tries when
+# missing. GOAL: demo, test, lab, count, report or cross (the compilers that test_library tries when
 # they are there). With SETUP=0 it only lists what is missing and exits with 2. Beside it only
 # the lab's `vmlab.sh prepare` uses the network.
 set -eu
@@ -9,6 +9,7 @@ set -eu
 demo="gcc g++ libc6-dev pkg-config python3 libtinygltf-dev libhidapi-dev libgpiod-dev libpng-dev"
 test="$demo libcmocka-dev assimp-testmodels"
 count="$demo valgrind gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm qemu-system-misc"
+report="$count gnuplot-nox fonts-dejavu-core"
 cross="gcc-arm-none-eabi gcc-riscv64-unknown-elf gcc-avr"
 lab="$demo libusb-1.0-0-dev gpiod qemu-system-x86 busybox-static cpio kmod xz-utils"
 
@@ -18,9 +19,10 @@ demo) wanted=$demo ;;
 test) wanted=$test ;;
 lab) wanted=$lab goal=lab-test ;;
 count) wanted=$count ;;
+report) wanted=$report ;;
 cross) wanted=$cross ;;
 *)
-    echo "usage: setup.sh demo|test|lab|count|cross   (SETUP=0: only list what is missing)" >&2
+    echo "usage: setup.sh demo|test|lab|count|report|cross   (SETUP=0: only list what is missing)" >&2
     exit 2
     ;;
 esac
