@@ -284,6 +284,18 @@ static void judge_triangle(const ew_raster *raster, const ref_triangle *truth)
     }
 }
 
+/* Judges what was traced since the source triangle began. */
+static void judge_drawn(const ew_raster *raster, const ref_corner corner[3])
+{
+    ref_triangle truth;
+    if (!ref_triangle_init(&truth, &now.camera, corner)) {
+        now.m.wrong_px += (long)now.fragments; /* drawn, though seen edge-on */
+        return;
+    }
+    if (now.triangles || now.fragments) judge_triangle(raster, &truth);
+    mark_truth(&truth, raster->material.flags & EW_DOUBLE_SIDED);
+}
+
 int measure_mesh(ew_geometry *geometry, const double mv[3][4], const ew_mesh *mesh)
 {
     for (uint32_t i = 0; i < mesh->index_count; i += 3) {
@@ -301,15 +313,25 @@ int measure_mesh(ew_geometry *geometry, const double mv[3][4], const ew_mesh *me
         now.fragments = 0;
         int32_t result = ew_draw_triangles(geometry, &one);
         if (result < 0) return (int)result;
-        ref_triangle truth;
-        if (!ref_triangle_init(&truth, &now.camera, corner)) {
-            now.m.wrong_px += (long)now.fragments; /* drawn, though seen edge-on */
-            continue;
-        }
-        if (now.triangles || now.fragments) judge_triangle(geometry->raster, &truth);
-        mark_truth(&truth, geometry->raster->material.flags & EW_DOUBLE_SIDED);
+        judge_drawn(geometry->raster, corner);
     }
     return 0;
+}
+
+int measure_triangle(ew_raster *raster, const ew_raster_vertex *const v[3])
+{
+    ref_corner corner[3];
+    const ref_camera *c = &now.camera;
+    for (int k = 0; k < 3; k++) {
+        double z = c->near_z / ldexp(v[k]->w, -31), x = ldexp(v[k]->x, -12), y = ldexp(v[k]->y, -12);
+        corner[k] = (ref_corner){ ((x - c->left) * 2 / c->width - 1) * z / c->fx, (1 - (y - c->top) * 2 / c->height) * z / c->fy, z,
+                                  ldexp(v[k]->u, -12), ldexp(v[k]->v, -12) };
+    }
+    now.triangles = 0;
+    now.fragments = 0;
+    int result = ew_raster_triangle(raster, v[0], v[1], v[2]);
+    if (result >= 0) judge_drawn(raster, corner);
+    return result < 0 ? result : 0;
 }
 
 /* ---- the picture ---- */

@@ -45,6 +45,10 @@ void measure_begin(const ew_target *target, const ref_camera *camera, uint16_t b
  * first error of ew_draw_triangles. */
 int measure_mesh(ew_geometry *geometry, const double model_view[3][4], const ew_mesh *mesh);
 
+/* Draws one triangle by ew_raster_triangle; the camera's place does not matter, as the corners are
+ * taken where they are. Returns 0 or its error. */
+int measure_triangle(ew_raster *raster, const ew_raster_vertex *const corners[3]);
+
 /* Pictures of what was judged, width * height each, any of them NULL: the colour that exact
  * coverage, depth, u and v give, and of the fragment that is seen its displacement (px, -1
  * where there is none) and its error in texels (the larger of u and v, likewise). */

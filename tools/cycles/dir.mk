@@ -39,15 +39,16 @@ $(C)/count.so: tools/cycles/count.c
 # $(C)/BITS/bench-TARGET; the scenes' data is compiled once for each target
 define bench_target
 $(C)/data-$(1).o: $(C)/scene_data.c tools/cycles/scene_data.h
-	$$(filter-out -nostdlib -Wl$$(,)%,$$(cc_$(1))) -Iinclude -Itools/cycles -c -o $$@ $$<
+	@mkdir -p $$(@D); echo "CC $$@"; $$(filter-out -nostdlib -Wl$$(,)%,$$(cc_$(1))) -Iinclude -Itools/cycles -c -o $$@ $$<
 $(C)/%/bench-$(1): $(CYCLES_DEPS) $(C)/data-$(1).o $(port_$(1)) $(wildcard $(PORT)/*.ld $(PORT)/*.h)
-	@mkdir -p $$(@D)
-	$$(cc_$(1)) -DEW_RECIP_BITS=$$* -Iinclude -o $$@ $$(filter %.c %.S %.o,$$^) $$(link_$(1))
+	@mkdir -p $$(@D); echo "CC $$@"
+	@$$(cc_$(1)) -DEW_RECIP_BITS=$$* -Iinclude -o $$@ $$(filter %.c %.S %.o,$$^) $$(link_$(1))
 endef
 , := ,
 $(foreach t,host m0plus m3 m4 m33 rv32imc,$(eval $(call bench_target,$(t))))
 $(C)/list: $(CYCLES_DEPS) $(C)/data-host.o
-	$(cc_host) -DEW_TRACE=1 -Iinclude -o $@ $(filter %.c %.o,$^)
+	@echo "CC $@"
+	@$(cc_host) -DEW_TRACE=1 -Iinclude -o $@ $(filter %.c %.o,$^)
 bench_images = $(C)/list $(C)/count.so $(foreach b,$(1),$(foreach t,$(COUNT_TARGETS),$(C)/$(b)/bench-$(t)))
 
 COUNT := PYTHONDONTWRITEBYTECODE=1 $(PYTHON) tools/cycles/
@@ -56,10 +57,10 @@ check-counts:  ## fail where a count has grown by more than 1 % since tools/cycl
 update-counts:  ## write today's counts into tools/cycles/baseline.csv
 count check-counts update-counts:
 	@SETUP=$(SETUP) tools/setup/setup.sh count
-	@$(MAKE) --no-print-directory $@-run
+	@$(MAKE) --no-print-directory -j2 $@-run
 count-run: $(call bench_images,$(COUNT_BITS))
 	@mkdir -p build/report
-	$(COUNT)count.py --build $(C) --bits $(COUNT_BITS) --csv build/report/counts.csv $(COUNT_TARGETS)
+	@$(COUNT)count.py --build $(C) --bits $(COUNT_BITS) --csv build/report/counts.csv $(COUNT_TARGETS)
 check-counts-run update-counts-run: $(call bench_images,$(COUNT_BITS))
-	$(COUNT)baseline.py $(firstword $(subst -, ,$@)) --build $(C) --bits $(COUNT_BITS) --baseline tools/cycles/baseline.csv $(COUNT_TARGETS)
+	@$(COUNT)baseline.py $(firstword $(subst -, ,$@)) --build $(C) --bits $(COUNT_BITS) --baseline tools/cycles/baseline.csv $(COUNT_TARGETS)
 .PHONY: count check-counts update-counts count-run check-counts-run update-counts-run

@@ -13,7 +13,7 @@ ERRORS = {"worst": ("disp_max_px", "worst displacement, px"), "rms": ("disp_rms_
 FLOOR = {"worst": 1 / 512, "rms": 1 / 8192, "texels": 1 / 8192}  # what is below stands here: a logarithmic axis has no 0
 COLOURS = ["#1b6ca8", "#7b3fa0", "#2a9d4a", "#d98a00", "#0a9396", "#8d6e63", "#5c6bc0", "#9e9d24"]
 AUTO_COLOUR, FRONTIER_COLOUR, REFERENCE_COLOUR, PEER_COLOUR = "#c8102e", "#b0b0b0", "#555555", "#d81b9a"
-WIDTH, HEIGHT = 560, 460
+WIDTH, HEIGHT = 480, 400
 
 
 def texels(row):
@@ -72,11 +72,21 @@ class Script:
         return f"$d{self.blocks}"
 
 
+def axes(shown, floor):
+    """Ranges a little wider than the points; the left end says what it stands for."""
+    xs, ys = zip(*shown)
+    tics = [f"'<= 1/{round(1 / floor)}' {floor:.6g}"] + [f"'{10.0 ** e:g}' 1e{e}" for e in range(-4, 5) if 10.0 ** e > 4 * floor]
+    values = [m * 10 ** e for e in range(0, 5) for m in (1, 2, 3, 5, 7)]
+    return [f"set xrange [{floor / 1.4:.6g}:{max(max(xs), 4 * floor) * 1.5:.6g}]", f"set xtics ({', '.join(tics)})",
+            f"set yrange [{min(ys) / 1.2:.6g}:{max(ys) * 1.2:.6g}]", f"set ytics ({', '.join(map(str, values))})"]
+
+
 def panel(script, name, title, rows, marks, speed, error, bits):
     plots = []
     of = points([row for row in rows if row["recip_bits"] == bits], speed, error)
     if not of:
         return False
+    shown = points(rows, speed, error) + points(marks, speed, error)
     plots.append(f"{script.block(frontier(of))} with lines lw 5 lc rgb '{FRONTIER_COLOUR}' title 'frontier'")
     colours = iter(COLOURS * 2)
     ordered = sorted(series(rows, bits).items(), key=lambda item: item[0].startswith(tables.AUTO))
@@ -86,26 +96,22 @@ def panel(script, name, title, rows, marks, speed, error, bits):
         plots.append(f"{script.block(points(own, speed, error))} with linespoints {style} title '{method}'")
     for source, pt, colour in (("prototype", 2, REFERENCE_COLOUR), ("peers", 3, PEER_COLOUR)):
         own = [mark for mark in marks if (mark["source"] == "prototype") == (source == "prototype")]
-        own = [(x, y, f"{mark['source']}_{mark['method']}".replace(" ", "_"))
-               for mark in own for x, y in points([mark], speed, error)]
+        own = sorted((x, y, mark["source"]) for mark in own for x, y in points([mark], speed, error))
         if own:
             data = script.block(own)
             plots.append(f"{data} using 1:2 with points pt {pt} ps 0.8 lc rgb '{colour}' title '{source}'")
-            if source == "peers":
-                plots.append(f"{data} using 1:2:(substr(stringcolumn(3), 1, strstrt(stringcolumn(3), '_') - 1)) with labels left "
-                             f"offset 0.7,0.2 font ',9' tc rgb '{colour}' notitle")
+            for first, offset in ((0, "0.7,0.5"), (1, "0.7,-0.5")) if source == "peers" else ():  # neighbours part
+                plots.append(f"{data} every 2::{first} using 1:2:3 with labels left offset {offset} font ',9' tc rgb '{colour}' notitle")
     script.lines += [f"set title '{title}'", f"set xlabel '{ERRORS[error][1]}'", f"set ylabel '{SPEEDS[speed][1]}'",
-                     f"set xrange [{FLOOR[error] / 1.4:.6g}:*]"]
-    script.lines.append(f"set xtics add ('<= {FLOOR[error]:.2g}' {FLOOR[error]:.6g})")
+                     *axes(shown, FLOOR[error])]
     for terminal, suffix in ((f"svg size {WIDTH},{HEIGHT} dynamic enhanced font 'sans,12' background '#ffffff'", "svg"),
                              (f"pngcairo size {WIDTH},{HEIGHT} enhanced font 'DejaVu Sans,10'", "png")):
         script.lines += [f"set terminal {terminal}", f"set output '{name}.{suffix}'", "plot " + ", ".join(plots)]
-    script.lines.append("set xtics autofreq")
     return True
 
 
 HEAD = ["set logscale xy", "set grid lc rgb '#e4e4e4'", "set format x '%g'", "set format y '%g'",
-        "set key outside bottom center horizontal samplen 1.5 font ',10'", "set border 3", "set tics nomirror",
+        "set key below samplen 1.5 font ',10'", "set bmargin 6.5", "set border 3", "set tics nomirror",
         "set termoption noenhanced"]
 
 

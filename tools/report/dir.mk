@@ -6,14 +6,14 @@ JUDGE_SRCS := tools/report/judge.c $(addprefix host_tests/,accuracy/measure.c ac
   reference/referee.c reference/scenes.c) $(addprefix tools/common/,image.c player.c whole_file.c)
 $(C)/%/judge: $(JUDGE_SRCS) $(CORE_SRCS) tools/cycles/cases.h \
   $(wildcard include/edgewalk/*.h host_tests/*/*.h tools/common/*.h fixed/*.inc src/*/*.h)
-	@mkdir -p $(@D)
-	$(CC) $(HOST_CFLAGS) -DEW_TRACE=1 -DEW_RECIP_BITS=$* -o $@ $(filter %.c,$^) -lpng -lz -lm
+	@mkdir -p $(@D); echo "CC $@"
+	@$(CC) $(HOST_CFLAGS) -DEW_TRACE=1 -DEW_RECIP_BITS=$* -o $@ $(filter %.c,$^) -lpng -lz -lm
 
 report:  ## speed against accuracy: tables, charts and a page in build/report (REPORT_BITS=, COUNT_TARGETS=)
 	@SETUP=$(SETUP) tools/setup/setup.sh report
-	@$(MAKE) --no-print-directory report-run
+	@$(MAKE) --no-print-directory -j2 report-run
 report-run: $(call bench_images,$(REPORT_BITS)) $(foreach b,$(REPORT_BITS),$(C)/$(b)/judge)
 	@mkdir -p $(REPORT)
-	PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=tools/cycles $(PYTHON) tools/report/report.py --build $(C) --out $(REPORT) \
+	@PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=tools/cycles $(PYTHON) tools/report/report.py --build $(C) --out $(REPORT) \
 	  --bits "$(REPORT_BITS)" --scenes "$(foreach s,$(COUNT_SCENES),$(s)=$(B)/scenes/$(s).ewb)" $(COUNT_TARGETS)
 .PHONY: report report-run

@@ -173,8 +173,8 @@ def write(out, rows, auto, names, differing, bits, versions):
 <h1>edgewalk: speed against accuracy</h1>
 <p>edgewalk is a fixed-point 3D rasterizer for microcontrollers that is told how much error a scene can bear and does no more work
 than that. This page shows what each way of drawing a texture costs on six processors, and how far from the truth it is.</p>
-<nav><a href="#cost">Cost</a><a href="#accuracy">Accuracy</a><a href="#auto">The automatic choice</a>
-{"".join(f'<a href="#scene-{scene}">Scene {scene}</a>' for scene in scenes)}<a href="#how">How it was measured</a></nav>
+<nav><a href="#cost">Cost</a> <a href="#accuracy">Accuracy</a> <a href="#auto">The automatic choice</a>
+{" ".join(f'<a href="#scene-{scene}">Scene {scene}</a>' for scene in scenes)} <a href="#how">How it was measured</a></nav>
 
 <h2 id="cost">What a picture costs</h2>
 <p>Executed instructions per fragment, and in brackets modelled cycles, of the automatic choice with a tolerance of 1/4 pixel and a
