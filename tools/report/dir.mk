@@ -17,3 +17,19 @@ report-run: $(call bench_images,$(REPORT_BITS)) $(foreach b,$(REPORT_BITS),$(C)/
 	@PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=tools/cycles $(PYTHON) tools/report/report.py --build $(C) --out $(REPORT) \
 	  --bits "$(REPORT_BITS)" --scenes "$(foreach s,$(COUNT_SCENES),$(s)=$(B)/scenes/$(s).ewb)" $(COUNT_TARGETS)
 .PHONY: report report-run
+
+# The walks run under the sanitizers: no axis may end in a write outside or undefined behaviour.
+STABILITY_SRCS := tools/report/stability.c $(filter-out tools/% host_tests/accuracy/scene_measure.c,$(JUDGE_SRCS)) \
+  $(filter-out src/scene/% src/display/%,$(CORE_SRCS))
+$(C)/%/stability: $(STABILITY_SRCS) tools/cycles/cases.h $(wildcard include/edgewalk/*.h host_tests/*/*.h fixed/*.inc src/*/*.h)
+	@mkdir -p $(@D); echo "CC $@"
+	@$(CC) $(HOST_CFLAGS) -g -fsanitize=address,undefined -fno-sanitize-recover=all -include assert.h '-DEW_ASSERT=assert' \
+	  -DEW_TRACE=1 -DEW_RECIP_BITS=$* -o $@ $(filter %.c,$^) -lm
+STABILITY := $(foreach b,$(COUNT_BITS) $(filter-out $(COUNT_BITS),$(REPORT_BITS)),$(C)/$(b)/stability)
+stability:  ## the axes along which methods fail, walked until they do: build/report/stability.csv
+	@SETUP=$(SETUP) tools/setup/setup.sh report
+	@$(MAKE) --no-print-directory -j2 stability-run
+stability-run: $(STABILITY)
+	@mkdir -p $(REPORT)
+	@PYTHONDONTWRITEBYTECODE=1 $(PYTHON) tools/report/atlas.py --out $(REPORT) $(STABILITY)
+.PHONY: stability stability-run
