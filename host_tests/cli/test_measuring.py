@@ -13,6 +13,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "tools" / "cycles"), str(ROOT / "tools" / "report")]
 
+import atlas  # noqa: E402
 import baseline  # noqa: E402
 import charts  # noqa: E402
 import count  # noqa: E402
@@ -136,6 +137,19 @@ class Tables(unittest.TestCase):
 
     def test_frontier(self):
         self.assertEqual(charts.frontier([(1, 5), (2, 6), (3, 4), (2, 5)]), [(1, 5), (3, 5), (3, 4)])
+
+
+class Atlas(unittest.TestCase):
+    @staticmethod
+    def walk(states, predicted):
+        return [{"axis": "a", "method": "m", "x": str(2 ** i), "predicted_limit": predicted, "state": s} for i, s in enumerate(states)]
+
+    def test_limits(self):
+        for states, predicted, measured, verdict in (
+                (["ok", "ok", "ok", "degraded"], "5", 4, "agrees"), (["ok", "degraded", "ok"], "4", 1, "DISAGREES"),
+                (["degraded", "degraded", "ok"], "4", 4, "agrees"), (["ok", "ok"], "4", None, "never reached"),
+                (["refused"], "4", None, "never ok"), (["ok", "refused"], "na", 1, "")):
+            self.assertEqual(atlas.limits(self.walk(states, predicted)), [["a", "m", predicted, measured, verdict]], states)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 import html
 import os
 
+import atlas
 import charts
 import model
 import tables
@@ -131,6 +132,35 @@ def scene_section(scene, names, differing):
     return "\n".join(parts)
 
 
+AXES = {
+    "depth_ratio_less_1": "farthest over nearest z along 240 pixels, less 1",
+    "far_horizon_near_over_z": "near/z of a wall: how far away it is",
+    "sliver_height_px": "height of slivers across the screen", "tiny_triangle_side_px": "side of the cells of a net of triangles",
+    "span_px": "length of a span along which 1/z falls to 60 %", "uv_range_texels": "texels from corner to corner",
+    "guard_half_width_px": "half the width of a triangle that stands over the screen",
+    "near_plane_z_over_near": "z of a floor's near corners over the near distance: at the eye and behind it too",
+}
+
+
+def stability(out):
+    """The section on where methods fail, of stability.csv."""
+    rows = atlas.read(os.path.join(out, "stability.csv"))
+    lines = [[f"{axis}, {method}", f"{float(predicted):g}", "-" if measured is None else f"{measured:g}",
+              verdict if verdict != "DISAGREES" else "<td class='over'>disagrees</td>"]
+             for axis, method, predicted, measured, verdict in atlas.limits(rows) if verdict]
+    figures = "".join(f"<figure><a href='charts/stability-{axis}.svg'>{image(f'charts/stability-{axis}.svg', axis)}</a><figcaption>"
+                      f"{AXES.get(axis, '')} <a href='charts/stability-{axis}.png'>PNG</a></figcaption></figure>"
+                      for axis in dict.fromkeys(row["axis"] for row in rows))
+    states = [row["state"] for row in rows]
+    return f"""<p>Each axis is walked from safe to broken, under the address and undefined behaviour sanitizers and with a margin around
+the picture that must stay as it is. {len(rows):,} steps: {states.count("ok"):,} ok, {states.count("degraded"):,} degraded (the error grew
+beyond the promise, or beyond 1/4 pixel for the affine method), {states.count("refused"):,} refused with an error code. Filled marks are ok,
+circles degraded, crosses refused; a dashed line is where a formula predicts the limit. <a href="stability.csv">stability.csv</a></p>
+<p>Predicted limits beside measured ones; they agree within a factor of {atlas.FACTOR:g}:</p>
+{table(["axis, method", "predicted", "measured", ""], lines)}
+<div class="grid">{figures}</div>"""
+
+
 HOW = """
 <p>A <b>fragment</b> is a pixel of a triangle that is drawn, before the depth test. Clearing is not counted; transform, culling,
 clipping and triangle set-up are, and in the sample scene the posing of its nodes.</p>
@@ -173,7 +203,7 @@ def write(out, rows, auto, names, differing, bits, versions):
 <h1>edgewalk: speed against accuracy</h1>
 <p>edgewalk is a fixed-point 3D rasterizer for microcontrollers that is told how much error a scene can bear and does no more work
 than that. This page shows what each way of drawing a texture costs on six processors, and how far from the truth it is.</p>
-<nav><a href="#cost">Cost</a> <a href="#accuracy">Accuracy</a> <a href="#auto">The automatic choice</a>
+<nav><a href="#cost">Cost</a> <a href="#accuracy">Accuracy</a> <a href="#auto">The automatic choice</a> <a href="#stability">Where methods fail</a>
 {" ".join(f'<a href="#scene-{scene}">Scene {scene}</a>' for scene in scenes)} <a href="#how">How it was measured</a></nav>
 
 <h2 id="cost">What a picture costs</h2>
@@ -199,11 +229,15 @@ table sizes; <a href="auto.csv">auto.csv</a> names both for every case.</p>
 <div class="scale"></div><div class="scale-ends soft"><span>0</span><span>the scale's end, and beyond</span></div>
 {"".join(scene_section(scene, names, differing) for scene in scenes)}
 
+<h2 id="stability">Where methods fail</h2>
+{stability(out)}
+
 <h2 id="how">How it was measured, and how to repeat it</h2>
 {HOW}
 <p>Where the timings are from:</p>{sources()}
 <p>Made with:</p><pre>{html.escape(chr(10).join(f"{target}: {text}" for target, text in versions.items()))}</pre>
 <pre>make report            # this page, its tables and charts
+make stability         # where methods fail
 make count             # the counts of the default table on a terminal
 make check-counts      # fails where a count has grown by more than 1 %</pre>
 </body></html>

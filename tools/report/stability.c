@@ -259,7 +259,7 @@ static void guard_band(const pen *p)
         const ew_raster_vertex d = at(160, half, 0.5, 0, half / 300);
         triangle(&c, &a, &b, &d);
         measures m = end(&c);
-        report("guard_half_width_px", p, half, &c, &m, 0, EW_GUARD_PX);
+        report("guard_half_width_px", p, half, &c, &m, 0, p->method->bound == BOUND_AFFINE ? no_limit : (double)EW_GUARD_PX);
     }
 }
 
