@@ -33,7 +33,7 @@ typedef struct measures {
      * of the affine rung in px; that of a run of N pixels over N^2; the longest way from a
      * corner in texels, which a reciprocal's relative error is a part of. */
     double affine_bound, run_bound, reach;
-    long rung[8];          /* fragments by ew_rung                                            */
+    long rung[EW_RUNG_COUNT]; /* fragments by ew_rung                                         */
     long colour_px;        /* pixels whose colour no fragment may have (see measure_end)       */
 } measures;
 

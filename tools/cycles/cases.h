@@ -24,6 +24,9 @@ typedef struct bench_method {
 
 static const bench_method bench_methods[] = {
     { "affine", EW_RUNG_AFFINE, 0, BOUND_AFFINE, 0 },
+    { "runs8", EW_RUNG_RUNS_8, 0, BOUND_RUN, 8 },
+    { "runs16", EW_RUNG_RUNS_16, 0, BOUND_RUN, 16 },
+    { "runs32", EW_RUNG_RUNS_32, 0, BOUND_RUN, 32 },
     { "table", EW_RUNG_TABLE, 0, BOUND_TABLE, 0 },
     { "exact", EW_RUNG_EXACT, 0, BOUND_EXACT, 0 },
     { "runs", EW_RUNG_RUNS, 1, BOUND_TOLERANCE, 0 },

@@ -97,6 +97,9 @@ def main():
     progress.step("page")
     progress.end()
     over = sum(row["state"] == "over" for row in auto)
+    beyond = {(row["recip_bits"], row["scene"], tables.label(row)) for row in rows if row["beyond"]}
+    for bits, scene, label in sorted(beyond):
+        print(f"report: scene {scene}, {label}, table of {bits} bits: displaced beyond its bound")
     print(f"report: {args.out}/index.html; {len(rows)} rows of speed_accuracy.csv; auto: {len(auto) - over} of {len(auto)} "
           "as cheap as the cheapest rung, within 5 % of what the bound allows and 10 % of what measures so")
 

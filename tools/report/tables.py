@@ -50,6 +50,9 @@ def speed_accuracy(bits, judged, cases, counts):
                 if not math.isfinite(float(row[column])):
                     row[column] = "na"
                     row["notes"].append(f"{column}: the value drawn occurs nowhere on the triangle's plane")
+            row["beyond"] = number(row["disp_max_px"]) > float(j["bound_px"]) + SNAP
+            if row["beyond"]:
+                row["notes"].append(f"the worst displacement is beyond the bound, {j['bound_px']} px")
             row["notes"] = "; ".join(row["notes"])
             row.update(bound_px=float(j["bound_px"]), counted=counted, fragments=case.fragments,
                        within_e=int(j["within_e"]) / max(1, int(j["textured"])))
