@@ -154,7 +154,7 @@ def stability(out):
     states = [row["state"] for row in rows]
     return f"""<p>Each axis is walked from safe to broken, under the address and undefined behaviour sanitizers and with a margin around
 the picture that must stay as it is. {len(rows):,} steps: {states.count("ok"):,} ok, {states.count("degraded"):,} degraded (the error grew
-beyond the promise, or beyond 1/4 pixel for the affine method), {states.count("refused"):,} refused with an error code. Filled marks are ok,
+beyond the promise, or beyond 1/4 pixel for the affine method and fixed runs), {states.count("refused"):,} refused with an error code. Filled marks are ok,
 circles degraded, crosses refused; a dashed line is where a formula predicts the limit. <a href="stability.csv">stability.csv</a></p>
 <p>Predicted limits beside measured ones; they agree within a factor of {atlas.FACTOR:g}:</p>
 {table(["axis, method", "predicted", "measured", ""], lines)}
@@ -214,8 +214,8 @@ reciprocal table of {bits} bits (the default). 320 x 240 pixels, RGB565, 16-bit 
 <a href="speed_accuracy.csv">speed_accuracy.csv</a>, <a href="cycles.csv">cycles.csv</a>.</p>
 
 <h2 id="accuracy">How far from the truth</h2>
-<p>Against the referee, the same on every target. Methods: one linear map over the whole triangle (affine), runs of pixels as long
-as the bound allows (runs), a reciprocal for each pixel from the table (table) or refined (exact), and the automatic choice.</p>
+<p>Against the referee, the same on every target. Methods: one linear map over the whole triangle (affine) or over runs of 8, 16 or 32
+pixels, runs as long as the bound allows (runs), a reciprocal for each pixel from the table (table) or refined (exact), and the automatic choice.</p>
 {accuracy(rows, bits)}
 
 <h2 id="auto">The automatic choice against the cheapest</h2>

@@ -6,7 +6,7 @@
  * err_px is the worst displacement, err_lsb the worst depth error, wrong_px fragments missing, extra
  * or hit twice. predicted_limit is where the method's formula says that it stops being ok, na where
  * none does. state: refused (an error code), degraded (a coverage, depth or displacement beyond the
- * promise, or beyond 1/4 px for the affine method; on the axes of texture range, u or v off by
+ * promise, or beyond 1/4 px for the affine method and fixed runs; on the axes of texture range, u or v off by
  * more than e = 1/64 texel for methods that take no tolerance), ok.
  *
  * `--axes recip` walks only the axis that depends on the size of the reciprocal table. */
@@ -105,10 +105,13 @@ static void print_row(const char *axis, const pen *p, double x, double err_px, d
     else printf("%.6g,%s\n", limit, state);
 }
 
+/* Whether the method draws in lengths of its own, without asking how far that puts it off. */
+static int careless(const pen *p) { return p->method->bound == BOUND_AFFINE || p->method->bound == BOUND_RUN; }
+
 static double allowed(const pen *p)
 {
     if (p->method->takes_tolerance) return p->tolerance / 16.0 + snap;
-    return p->method->bound == BOUND_AFFINE || p->method->bound == BOUND_RUN ? 0.25 + snap : snap;
+    return careless(p) ? 0.25 + snap : snap;
 }
 
 static void report(const char *axis, const pen *p, double x, const canvas *c, const measures *m, long more_wrong, double limit)
@@ -140,12 +143,15 @@ static void wall(canvas *c, double x0, double x1, double y0, double y1, double w
 /* ---- axes ---- */
 
 /* Farthest over nearest z along 240 pixels, less one. A run of N pixels is off by
- * N |sqrt(r) - 1| / (sqrt(r) + 1). */
+ * N |sqrt(r) - 1| / (sqrt(r) + 1); to first order, at the far end, by N^2 x / (4 240). */
 static void depth_ratio(const pen *p)
 {
     const double n = 240, t = 0.25;
-    const double limit = p->method->bound == BOUND_AFFINE ? pow((n + t) / (n - t), 2) - 1 : no_limit;
-    for (double x = 1e-4; x < 2e6; x *= 1.7782794100389228) { /* 4 steps to a decade */
+    const double run = p->method->run;
+    const double limit = p->method->bound == BOUND_AFFINE ? pow((n + t) / (n - t), 2) - 1
+                         : p->method->bound == BOUND_RUN  ? 4 * n * t / (run * run)
+                                                          : no_limit;
+    for (double x = 1e-4; x < 2e6; x *= 1.333521432163324) { /* 8 steps to a decade */
         canvas c;
         begin(&c, p, W, H, 8);
         wall(&c, 40, 40 + n, 4, 44, 1, 1 / (1 + x), 200);
@@ -230,7 +236,7 @@ static void uv_range(const pen *p)
         begin(&c, p, W, H, 8);
         wall(&c, 40, 280, 4, 44, 0.9, 0.45, u);
         measures m = end(&c);
-        report("uv_range_texels", p, u, &c, &m, 0, p->method->bound == BOUND_AFFINE ? no_limit : limit);
+        report("uv_range_texels", p, u, &c, &m, 0, careless(p) ? no_limit : limit);
     }
 }
 
