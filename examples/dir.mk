@@ -32,3 +32,5 @@ $(BIN)/fills: $(B)/examples/fills.o $(addprefix $(B)/tools/common/,image.o whole
 	@mkdir -p $(@D)
 	$(CC) $(HOST_CFLAGS) $(LDFLAGS) -o $@ $^ -lpng -lz
 .PHONY: example-fills
+
+include examples/firmware/dir.mk

@@ -1,8 +1,8 @@
 #!/bin/sh
 # setup.sh GOAL: installs the distribution's packages that `make GOAL` needs and that are
-# missing. GOAL: demo, test, lab, count, report or cross (the compilers that test_library tries when
-# they are there). With SETUP=0 it only lists what is missing and exits with 2. Beside it only
-# the lab's `vmlab.sh prepare` uses the network.
+# missing. GOAL: demo, test, lab, count, report, firmware or cross (the compilers that
+# test_library tries when they are there). With SETUP=0 it only lists what is missing and exits
+# with 2. Beside it only the lab's `vmlab.sh prepare` uses the network.
 set -eu
 
 # What each goal needs, by the names of Debian 12.
@@ -11,6 +11,7 @@ test="$demo libcmocka-dev assimp-testmodels"
 count="$demo valgrind gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm qemu-system-misc"
 report="$count gnuplot-nox fonts-dejavu-core"
 cross="gcc-arm-none-eabi gcc-riscv64-unknown-elf gcc-avr"
+firmware="$demo clang $cross avr-libc qemu-system-arm qemu-system-misc simavr"
 lab="$demo libusb-1.0-0-dev gpiod qemu-system-x86 busybox-static cpio kmod xz-utils"
 
 goal=${1:-}
@@ -20,9 +21,10 @@ test) wanted=$test ;;
 lab) wanted=$lab goal=lab-test ;;
 count) wanted=$count ;;
 report) wanted=$report ;;
+firmware) wanted=$firmware ;;
 cross) wanted=$cross ;;
 *)
-    echo "usage: setup.sh demo|test|lab|count|report|cross   (SETUP=0: only list what is missing)" >&2
+    echo "usage: setup.sh demo|test|lab|count|report|firmware|cross   (SETUP=0: only list what is missing)" >&2
     exit 2
     ;;
 esac

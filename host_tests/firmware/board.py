@@ -1,0 +1,150 @@
+"""Programs of examples/firmware and same_bits on emulated boards."""
+import json
+import os
+import shutil
+import socket
+import subprocess
+import tempfile
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+IMAGES = os.path.join(ROOT, os.environ.get("EW_FIRMWARE", "build/release/firmware"))
+LIMIT_SECONDS = 120
+
+ARM, RISC_V, AVR, HOST = "arm-none-eabi-", "riscv64-unknown-elf-", "avr-", ""
+MACHINES = {  # target: tools, emulator's words, what it is, KB of RAM, KB of flash
+    "microbit": (ARM, ["-M", "microbit"], "Cortex-M0, BBC micro:bit", 16, 256),
+    "lm3s6965evb": (ARM, ["-M", "lm3s6965evb"], "Cortex-M3, LM3S6965 board", 64, 256),
+    "m0plus": (ARM, ["-M", "mps2-an385"], "Cortex-M0+ code on mps2-an385", 4096, 4096),
+    "m3": (ARM, ["-M", "mps2-an385"], "Cortex-M3, mps2-an385", 4096, 4096),
+    "m4": (ARM, ["-M", "mps2-an386"], "Cortex-M4, mps2-an386", 4096, 4096),
+    "m7": (ARM, ["-M", "mps2-an500"], "Cortex-M7, mps2-an500", 4096, 4096),
+    "m33": (ARM, ["-M", "mps2-an505"], "Cortex-M33, mps2-an505", 2048, 4096),
+    "m55": (ARM, ["-M", "mps3-an547"], "Cortex-M55, mps3-an547", 512, 512),
+    "rv32imc": (RISC_V, ["-M", "virt", "-cpu", "lowrisc-ibex", "-m", "16M", "-bios", "none", "-device", "bochs-display"],
+                "RV32IMC (Ibex), virt", 1024, 1024),
+    "avr": (AVR, [], "ATmega2560, 16-bit int", 8, 256),
+}
+for _compiler in ("gcc", "clang"):
+    for _level in ("O0", "O2", "O3"):
+        MACHINES[f"host-{_compiler}-{_level}"] = (HOST, [], f"host, {_compiler} -{_level}", None, None)
+
+EMULATORS = {ARM: "qemu-system-arm", RISC_V: "qemu-system-riscv32", AVR: "simavr"}
+
+
+def image(program, target):
+    return os.path.join(IMAGES, f"{program}-{target}.elf")
+
+
+def missing(program, target):
+    """Why a program cannot run on a target, or None."""
+    tools = MACHINES[target][0]
+    compiler = tools + "gcc" if tools or "gcc" in target else "clang"
+    for needed in (compiler, EMULATORS.get(tools)):
+        if needed and not shutil.which(needed):
+            return f"{needed} is not installed"
+    return None if os.path.exists(image(program, target)) else f"{image(program, target)} has not been made"
+
+
+def command(program, target):
+    tools, words = MACHINES[target][:2]
+    if tools == HOST:
+        return [image(program, target)]
+    if tools == AVR:
+        return [EMULATORS[tools], "-m", "atmega2560", "-f", "16000000", image(program, target)]
+    return [EMULATORS[tools], *words, "-display", "none", "-monitor", "none", "-serial", "none", "-chardev",
+            "stdio,id=console", "-semihosting-config", "enable=on,target=native,chardev=console",
+            "-kernel", image(program, target)]
+
+
+def run(program, target):
+    """The lines that a program prints; raises when it does not end well."""
+    if MACHINES[target][0] == AVR:
+        return run_avr(program, target)
+    done = subprocess.run(command(program, target), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, text=True, timeout=LIMIT_SECONDS)
+    if done.returncode != 0:
+        raise RuntimeError(f"{program} on {target}: status {done.returncode}: {(done.stdout + done.stderr)[-400:]}")
+    return done.stdout.splitlines()
+
+
+def run_avr(program, target):
+    """simavr does not end by itself: it is stopped at the line `end`. It shows each line in
+    colour and with a full stop for the line's end."""
+    lines = []
+    limited = ["timeout", str(LIMIT_SECONDS), *command(program, target)]
+    with subprocess.Popen(limited, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as avr:
+        for line in avr.stdout:
+            text = line.decode(errors="replace").replace("\x1b[32m", "").replace("\x1b[0m", "").rstrip("\n")
+            if text.endswith("."):
+                lines.append(text[:-1])
+            if lines and lines[-1] == "end":
+                avr.terminate()
+                return lines
+    raise RuntimeError(f"{program} on {target}: it ended, or took {LIMIT_SECONDS} s, before its last line: {lines[-1:]}")
+
+
+def sizes(program, target):
+    """Bytes of flash and of RAM that the linker gave out; the stack is not among them."""
+    tools = MACHINES[target][0]
+    done = subprocess.run([tools + "size", image(program, target)], check=True, stdout=subprocess.PIPE, text=True)
+    text, data, bss = (int(n) for n in done.stdout.splitlines()[1].split()[:3])
+    return text + data, data + bss
+
+
+class Shown:
+    """A board with a display: at each line `frame` of the program what the display shows is
+    kept, by QEMU's screendump. Then has frames (width, height, RGB bytes), the other lines
+    that the program printed, what the emulator had to say, and the exit status."""
+
+    def __init__(self, program, target):
+        self.frames, self.lines = [], []
+        with tempfile.TemporaryDirectory() as folder, socket.socket(socket.AF_UNIX) as server:
+            server.bind(os.path.join(folder, "qmp"))
+            server.listen(1)
+            server.settimeout(LIMIT_SECONDS)
+            with open(os.path.join(folder, "errors"), "w+", encoding="utf-8") as errors, subprocess.Popen(
+                    command(program, target) + ["-qmp", "unix:" + os.path.join(folder, "qmp")],
+                    stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=errors) as board:
+                try:
+                    self.follow(board, server, os.path.join(folder, "screen.ppm"))
+                    self.status = board.wait(LIMIT_SECONDS)
+                finally:
+                    board.kill()
+                errors.seek(0)
+                self.errors = errors.read()
+
+    def follow(self, board, server, dump):
+        with server.accept()[0] as link:
+            link.settimeout(LIMIT_SECONDS)
+            with link.makefile("rw", encoding="utf-8") as qmp:
+                qmp.readline()  # its greeting
+                ask(qmp, "qmp_capabilities")
+                for line in board.stdout:
+                    line = line.decode().strip()
+                    if line != "frame":
+                        self.lines.append(line)
+                        continue
+                    ask(qmp, "screendump", filename=dump)
+                    self.frames.append(read_ppm(dump))
+                    board.stdin.write(b"\n")
+                    board.stdin.flush()
+
+
+def ask(qmp, name, **arguments):
+    qmp.write(json.dumps({"execute": name, "arguments": arguments}) + "\n")
+    qmp.flush()
+    while True:
+        answer = json.loads(qmp.readline())
+        if "error" in answer:
+            raise RuntimeError(f"QEMU: {name}: {answer['error']}")
+        if "return" in answer:
+            return
+
+
+def read_ppm(path):
+    """Width, height and the RGB bytes of what QEMU writes: no comments in it."""
+    with open(path, "rb") as f:
+        kind, size, largest, pixels = f.read().split(b"\n", 3)
+    assert kind == b"P6" and largest == b"255", (kind, largest)
+    width, height = (int(n) for n in size.split())
+    return width, height, pixels

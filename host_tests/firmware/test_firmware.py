@@ -1,0 +1,226 @@
+"""The firmware examples on emulated boards, and the same bits on every machine.
+
+Writes build/report/hashes.csv (every hash of every target) and firmware.csv (what each
+program takes of flash, RAM and stack), and prints both in short."""
+import csv
+import os
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+import board
+from board import MACHINES, ROOT
+
+sys.path.insert(0, os.path.join(ROOT, "host_tests", "cli"))
+from png import png_pixels  # noqa: E402 - found by the line above
+
+BIN = os.path.join(ROOT, os.environ.get("EW_BIN", "build/release/bin"))
+REPORT = os.path.join(ROOT, "build", "report")
+REFERENCE = "host-gcc-O2"
+LITTLE, MIDDLE, FULL = "microbit", "lm3s6965evb", [t for t in MACHINES if t not in ("microbit", "lm3s6965evb", "avr")]
+
+hashes = {}  # (target, scene, method, tolerance, size): hash
+figures = []  # program, target, flash, RAM, stack, seconds
+
+
+def run(test, program, target):
+    """Runs, notes flash, RAM and stack, and returns the other lines."""
+    reason = board.missing(program, target)
+    if reason:
+        test.skipTest(reason)
+    start = time.monotonic()
+    lines = board.run(program, target)
+    note(program, target, lines, time.monotonic() - start)
+    return [line for line in lines if line != "end" and not line.startswith("stack ")]
+
+
+def note(program, target, lines, seconds):
+    stack = [int(line.split()[1]) for line in lines if line.startswith("stack ")]
+    if target.startswith("host"):
+        return
+    flash, ram = board.sizes(program, target)
+    room = 1024 * MACHINES[target][3]
+    if len(stack) != 1 or not 0 < stack[0] < room - ram:
+        raise AssertionError(f"{program} on {target}: stack {stack} of {room - ram} bytes")
+    figures.append((program, target, flash, ram, stack[0], seconds))
+
+
+def same_bits(test, target):
+    """Case to hash, of same_bits on a target."""
+    found = {}
+    for line in run(test, "same_bits", target):
+        kind, *case, value = line.split()
+        test.assertEqual(kind, "hash", line)
+        test.assertNotIn(tuple(case), found)
+        found[tuple(case)] = value
+    return found
+
+
+def expected_cases(target, reference):
+    """What a target has room for: host_tests/firmware/same_bits.h."""
+    if target in FULL:
+        return set(reference)
+    if target == MIDDLE:
+        return {case for case in reference if case[3] != "320x240"}
+    if target == LITTLE:
+        return {case for case in reference if case[3] != "320x240" and case[0] != "B"}
+    return {case for case in reference if case[0] in ("fixed", "triangles")}
+
+
+class SameBits(unittest.TestCase):
+    """One hash of colour and depth for each case, the same on every machine."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.reference = same_bits(cls("test_the_cases_differ"), REFERENCE)
+
+    def test_the_cases_differ(self):
+        """A picture that was not drawn would have its neighbour's hash."""
+        for size in ("64x48", "320x240"):
+            affine = {v for case, v in self.reference.items() if case[1:] == ("affine", "0", size)}
+            self.assertEqual(len(affine), 6 if size == "64x48" else 5)
+        drawn = {self.reference["D", method, t, "320x240"] for method, t in (
+            ("affine", "0"), ("exact", "0"), ("auto", "16"))}
+        self.assertEqual(len(drawn), 3)
+
+    def hold(self, target):
+        found = same_bits(self, target)
+        for case, value in found.items():
+            hashes[(target, *case)] = value
+        self.assertEqual(set(found), expected_cases(target, self.reference))
+        self.assertEqual({c: v for c, v in found.items() if self.reference[c] != v}, {})
+
+
+class Hash(unittest.TestCase):
+    """The `hash` example: baked scenes, four frames each."""
+
+    def hold(self, target):
+        for program, scene, size in (("hash", "courtyard", "320x240"), ("hash64x48", "crate", "64x48")):
+            if program == "hash" and target not in FULL:
+                continue
+            lines, wanted = run(self, program, target), run(self, program, REFERENCE)
+            self.assertEqual(len(set(wanted)), 4)
+            for line in lines:
+                hashes[(target, scene, "frame " + line.split()[1], "-", size)] = line.split()[2]
+            self.assertEqual(lines, wanted)
+
+
+for _target in MACHINES:
+    setattr(SameBits, "test_" + _target.replace("-", "_"), lambda self, t=_target: self.hold(t))
+    if _target != "avr":
+        setattr(Hash, "test_" + _target.replace("-", "_"), lambda self, t=_target: self.hold(t))
+
+
+def host_pictures(scene, size, frames, fps):
+    """What ew-render makes of the scene that is linked into the firmware: rows of RGB bytes."""
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([os.path.join(BIN, "ew-render"), os.path.join(board.IMAGES, scene), "--size", size, "--frames",
+                        str(frames), "--fps", str(fps), "-o", os.path.join(folder, "f.png")],
+                       check=True, stdout=subprocess.DEVNULL)
+        pictures = [png_pixels(os.path.join(folder, f"f-{i:04}.png"))[1] for i in range(frames)]
+    return pictures
+
+
+def rgb565(pixels):
+    """Channels of 5, 6 and 5 bits: what QEMU and ew-render each widen to 8 in a way of their own."""
+    return bytes(value >> (2 if i % 3 == 1 else 3) for i, value in enumerate(pixels))
+
+
+def grey4(red, green, blue):
+    """Luma of BT.601 in 16 steps, as the panel's firmware has it."""
+    return (632 * red + 610 * green + 241 * blue) >> 12
+
+
+class Oled(unittest.TestCase):
+    """The SSD0323 of lm3s6965evb: QEMU shows each pixel as 4x4 and grey n as 17 n."""
+
+    FRAMES = 20
+
+    def play(self, program):
+        reason = board.missing(program, "lm3s6965evb")
+        if reason:
+            self.skipTest(reason)
+        return board.Shown(program, "lm3s6965evb")
+
+    def differing(self, shown):
+        """Pixels of all screendumps that are not the host's."""
+        self.assertEqual(len(shown.frames), self.FRAMES)
+        total, greys = 0, set()
+        for (width, height, pixels), rows in zip(shown.frames, host_pictures("crate.ewb", "128x64", self.FRAMES, 10)):
+            self.assertEqual((width, height), (512, 256))
+            wanted = b""
+            for row in rows:
+                channels = rgb565(row)
+                levels = [grey4(*channels[i:i + 3]) for i in range(0, len(channels), 3)]
+                greys.update(levels)
+                wanted += b"".join(bytes([17 * level]) * 12 for level in levels) * 4
+            total += sum(pixels[i:i + 3] != wanted[i:i + 3] for i in range(0, len(wanted), 3))
+        self.assertGreaterEqual(len(greys), 10)
+        return total
+
+    def test_every_frame_is_the_hosts(self):
+        start = time.monotonic()
+        shown = self.play("oled")
+        self.assertEqual((shown.status, self.differing(shown)), (0, 0))
+        self.assertNotIn("ssd0323", shown.errors)
+        self.assertEqual(len({frame[2] for frame in shown.frames}), self.FRAMES)
+        note("oled", "lm3s6965evb", shown.lines, time.monotonic() - start)
+
+    def test_without_the_dc_line_it_is_noticed(self):
+        shown = self.play("oled_no_dc")
+        self.assertGreater(self.differing(shown), 1000)
+        self.assertIn("ssd0323: error", shown.errors)  # pixels taken for commands
+
+    def test_a_wrong_window_is_noticed(self):
+        shown = self.play("oled_window")
+        self.assertGreater(self.differing(shown), 1000)
+
+
+class Rgb565(unittest.TestCase):
+    """A linear frame buffer on RV32IMC."""
+
+    def test_every_frame_is_the_hosts(self):
+        reason = board.missing("rgb565", "rv32imc")
+        if reason:
+            self.skipTest(reason)
+        start = time.monotonic()
+        shown = board.Shown("rgb565", "rv32imc")
+        self.assertEqual((shown.status, len(shown.frames)), (0, 4))
+        for frame, rows in zip(shown.frames, host_pictures("courtyard.ewb", "320x240", 4, 4)):
+            self.assertEqual(frame[:2], (320, 240))
+            shows, wanted = rgb565(frame[2]), rgb565(b"".join(rows))
+            self.assertEqual(sum(a != b for a, b in zip(shows, wanted)), 0)
+        self.assertEqual(len({frame[2] for frame in shown.frames}), 4)
+        note("rgb565", "rv32imc", shown.lines, time.monotonic() - start)
+
+
+def write_csv(name, head, rows):
+    os.makedirs(REPORT, exist_ok=True)
+    with open(os.path.join(REPORT, name), "w", newline="", encoding="utf-8") as f:
+        csv.writer(f).writerows([head, *rows])
+
+
+def tearDownModule():
+    def cell(text):
+        return "na" if text == "-" else text
+
+    write_csv("hashes.csv", ["target", "scene", "method", "tolerance_px", "size", "hash"],
+              [(t, scene, method, cell(tol) if tol == "-" else f"{int(tol) / 16:g}", cell(size), value)
+               for (t, scene, method, tol, size), value in hashes.items()])
+    write_csv("firmware.csv", ["program", "target", "flash_bytes", "ram_bytes", "stack_bytes"], [f[:5] for f in figures])
+    reference = {key[1:]: value for key, value in hashes.items() if key[0] == REFERENCE}
+    print(f"{'target':34s}{'hashes':>8s}{'equal':>8s}")
+    for target in MACHINES:
+        mine = {key[1:]: value for key, value in hashes.items() if key[0] == target}
+        equal = sum(reference.get(case) == value for case, value in mine.items())
+        if mine:
+            print(f"{MACHINES[target][2]:34s}{len(mine):8d}{equal:8d}")
+    print(f"{'program':12s}{'on':34s}{'flash':>8s}{'RAM':>8s}{'stack':>7s}{'s':>6s}")
+    for program, target, flash, ram, stack, seconds in figures:
+        print(f"{program:12s}{MACHINES[target][2]:34s}{flash:8d}{ram:8d}{stack:7d}{seconds:6.1f}")
+
+
+if __name__ == "__main__":
+    unittest.main()
