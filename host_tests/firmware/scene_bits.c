@@ -23,7 +23,7 @@ static void draw(const bench_scene *s, const char *method, uint8_t rung, uint16_
     const uint16_t height = (uint16_t)(width * 3u / 4u);
     const uint32_t pixels = (uint32_t)width * height;
     const ew_target target = { .colour = same_colour, .depth = same_depth, .width = width, .height = height, .stride = width };
-    const ew_texture texture = { .texels = bench_texture, .log2_width = 8, .log2_height = 8 };
+    const ew_texture texture = { .texels = bench_texture, .width = 256, .height = 256 };
     const ew_material material = { .texture = &texture, .tolerance = tolerance, .rung = rung };
     const ew_projection projection = { 65536, 65536, { INT32_C(1) << 29, -1 } };
     const ew_viewport viewport = { 0, (int16_t)-(width / 8), width, width }; /* square, its middle is seen */

@@ -56,7 +56,7 @@ void triangle_bits(void)
     };
     generator g = { 1 };
     for (int i = 0; i < TEXTURE * TEXTURE; i++) texels[i] = (uint16_t)random32(&g);
-    const ew_texture texture = { .texels = texels, .log2_width = 4, .log2_height = 4 };
+    const ew_texture texture = { .texels = texels, .width = TEXTURE, .height = TEXTURE };
     for (unsigned i = 0; i < sizeof cases / sizeof *cases; i++) {
         const ew_material material = { .texture = &texture, .colour = 0xFBE0, .tolerance = cases[i].tolerance,
                                        .rung = cases[i].rung, .flags = EW_DOUBLE_SIDED };
