@@ -64,9 +64,12 @@ room_avr := 0
 room_microbit := 1
 room_lm3s6965evb := 2
 SAME_BITS := $(wildcard host_tests/firmware/*.c)
-$(foreach t,$(FIRMWARE_TARGETS),$(call \
-  image,same_bits,$(t),$(SAME_BITS),-I$(C) -DSAME_BITS_ROOM=$(or $(room_$(t)),3)))
-$(filter $(F)/same_bits-%,$(FIRMWARE_IMAGES)): $(C)/scene_data.h
+$(F)/standard_scenes.c: $(C)/scene_data
+	@mkdir -p $(@D)
+	$< > $@
+$(foreach t,$(FIRMWARE_TARGETS),$(call image,same_bits,$(t),$(SAME_BITS) \
+  $(if $(filter avr,$(t)),,$(F)/standard_scenes.c),-Itools/cycles -DSAME_BITS_ROOM=$(or $(room_$(t)),3)))
+$(filter $(F)/same_bits-%,$(FIRMWARE_IMAGES)): tools/cycles/cases.h tools/cycles/scene_data.h
 
 firmware:  ## set up what is missing; build the firmware examples for their boards: build/*/firmware/*.elf
 	@SETUP=$(SETUP) tools/setup/setup.sh firmware

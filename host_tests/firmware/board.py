@@ -20,8 +20,8 @@ MACHINES = {  # target: tools, emulator's words, what it is, KB of RAM, KB of fl
     "m7": (ARM, ["-M", "mps2-an500"], "Cortex-M7, mps2-an500", 4096, 4096),
     "m33": (ARM, ["-M", "mps2-an505"], "Cortex-M33, mps2-an505", 2048, 4096),
     "m55": (ARM, ["-M", "mps3-an547"], "Cortex-M55, mps3-an547", 512, 512),
-    "rv32imc": (RISC_V, ["-M", "virt", "-cpu", "lowrisc-ibex", "-m", "16M", "-bios", "none", "-device", "bochs-display"],
-                "RV32IMC (Ibex), virt", 1024, 1024),
+    "rv32imc": (RISC_V, ["-M", "virt", "-cpu", "lowrisc-ibex", "-m", "32M", "-bios", "none", "-device", "bochs-display"],
+                "RV32IMC (Ibex), virt", 8192, 8192),
     "avr": (AVR, [], "ATmega2560, 16-bit int", 8, 256),
 }
 for _compiler in ("gcc", "clang"):

@@ -47,9 +47,7 @@ int main(void)
 {
     fixed_bits();
     triangle_bits();
-#if SAME_BITS_ROOM > 0
     scene_bits();
-#endif
     board_print_stack();
     board_print("end\n");
     return 0;

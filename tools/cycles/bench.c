@@ -11,7 +11,7 @@
 
 enum { W = BENCH_WIDTH, H = BENCH_HEIGHT, BACKGROUND = 0 };
 
-/* What the port gives: port/semihost.c in firmware, the end of this file on the host. */
+/* What the port gives: the board in firmware, the end of this file on the host. */
 void bench_line(const char *text);
 
 static uint16_t colour[W * H], depth[W * H];
@@ -99,17 +99,11 @@ static int run(const bench_scene *s, const bench_method *method, uint16_t tolera
     const ew_target target = { .colour = colour, .depth = depth, .width = W, .height = H, .stride = W };
     const ew_texture texture = { .texels = bench_texture, .width = 256, .height = 256 };
     const ew_material material = { .texture = &texture, .tolerance = tolerance, .rung = method->rung };
-    const ew_projection projection = { 65536, 65536, { 1 << 29, -1 } };
-    const ew_viewport viewport = { 0, -40, 320, 320 };
-    ew_mat34 model_view;
-    for (int i = 0; i < 3; i++) { /* 1/512 unit: host_tests/reference/scenes.h */
-        ew_row_from_q16_16(&model_view.row[i], i == 0 ? 64 << 16 : 0, i == 1 ? 64 << 16 : 0, i == 2 ? 64 << 16 : 0, 0);
-    }
     int error = ew_raster_init(&raster, &target);
     ew_raster_clear(&raster, BACKGROUND);
     if (!error) error = ew_raster_set_material(&raster, &material);
     ew_geometry_init(&geometry, &raster);
-    if (!error) error = ew_transform_set(&geometry.transform, &projection, &model_view, &viewport);
+    if (!error) error = bench_view(&geometry.transform, W);
     if (!error && s->file) {
         error = ew_scene_open(&scene, s->file, s->file_bytes);
         if (!error && (scene.largest_primitive > BENCH_MOST_VERTICES ||
@@ -185,5 +179,8 @@ int main(int argc, char **argv)
     return argc > 1 ? 2 : run_all();
 }
 #else
+#include "../../examples/firmware/board/board.h"
+
+void bench_line(const char *text) { board_print(text); }
 int main(void) { return run_all(); }
 #endif

@@ -10,22 +10,10 @@ COUNT_BITS := 8
 COUNT_SCENES := courtyard
 COUNT_FILES := $(COUNT_SCENES:%=$(B)/scenes/%.ewb)
 
-cc_host := $(CC) -std=gnu99 -O2 -g -Wall -Wextra
-nolibc := -ffreestanding -ffunction-sections -nostdlib -Wl,--gc-sections -Wl,--no-warn-rwx-segments
-cc_m = arm-none-eabi-gcc -std=gnu99 -O2 -g -Wall -Wextra $(nolibc) -mthumb
-cc_m0plus = $(cc_m) -mcpu=cortex-m0plus
-cc_m3 = $(cc_m) -mcpu=cortex-m3
-cc_m4 = $(cc_m) -mcpu=cortex-m4 -mfloat-abi=soft
-cc_m33 = $(cc_m) -mcpu=cortex-m33 -mfloat-abi=soft
-cc_rv32imc = riscv64-unknown-elf-gcc -std=gnu99 -O2 -g -Wall -Wextra $(nolibc) -march=rv32imc -mabi=ilp32 -mcmodel=medany
-PORT := tools/cycles/port
-port_m := $(PORT)/start_m.c $(PORT)/semihost.c
-place = -T $(PORT)/m.ld -Wl,--defsym=_flash=$(1) -Wl,--defsym=_ram=$(2) -lgcc
-$(foreach t,m0plus m3 m4,$(eval port_$t := $(port_m))$(eval link_$t := $(call place,0,0x20000000)))
-port_m33 := $(port_m)
-link_m33 := $(call place,0x10000000,0x38000000)
-port_rv32imc := $(PORT)/start_rv.S $(PORT)/semihost.c
-link_rv32imc := -T $(PORT)/rv.ld -lgcc
+bench_flags := -std=gnu99 -O2 -g -Wall -Wextra
+freestanding := -ffreestanding -ffunction-sections
+# the emulated ones are those of examples/firmware/board/boards.mk
+bench_cc = $(if $(filter host,$(1)),$(CC) $(bench_flags),$(cc_$(1)) $(bench_flags) $(freestanding))
 
 $(C)/scene_data: tools/cycles/scene_data.c host_tests/reference/scenes.c fixed/matrix.c fixed/arithmetic.c fixed/recip.c
 	@mkdir -p $(@D)
@@ -39,16 +27,15 @@ $(C)/count.so: tools/cycles/count.c
 # $(C)/BITS/bench-TARGET; the scenes' data is compiled once for each target
 define bench_target
 $(C)/data-$(1).o: $(C)/scene_data.c tools/cycles/scene_data.h
-	@mkdir -p $$(@D); echo "CC $$@"; $$(filter-out -nostdlib -Wl$$(,)%,$$(cc_$(1))) -Iinclude -Itools/cycles -c -o $$@ $$<
-$(C)/%/bench-$(1): $(CYCLES_DEPS) $(C)/data-$(1).o $(port_$(1)) $(wildcard $(PORT)/*.ld $(PORT)/*.h)
+	@mkdir -p $$(@D); echo "CC $$@"; $$(call bench_cc,$(1)) -Iinclude -Itools/cycles -c -o $$@ $$<
+$(C)/%/bench-$(1): $(CYCLES_DEPS) $(C)/data-$(1).o $(board_$(1)) $(wildcard $(BOARD)/*.ld $(BOARD)/*.h)
 	@mkdir -p $$(@D); echo "CC $$@"
-	@$$(cc_$(1)) -DEW_RECIP_BITS=$$* -Iinclude -o $$@ $$(filter %.c %.S %.o,$$^) $$(link_$(1))
+	@$$(call bench_cc,$(1)) -DEW_RECIP_BITS=$$* -Iinclude -o $$@ $$(filter %.c %.S %.o,$$^) $$(link_$(1))
 endef
-, := ,
 $(foreach t,host m0plus m3 m4 m33 rv32imc,$(eval $(call bench_target,$(t))))
 $(C)/list: $(CYCLES_DEPS) $(C)/data-host.o
 	@echo "CC $@"
-	@$(cc_host) -DEW_TRACE=1 -Iinclude -o $@ $(filter %.c %.o,$^)
+	@$(call bench_cc,host) -DEW_TRACE=1 -Iinclude -o $@ $(filter %.c %.o,$^)
 bench_images = $(C)/list $(C)/count.so $(foreach b,$(1),$(foreach t,$(COUNT_TARGETS),$(C)/$(b)/bench-$(t)))
 
 COUNT := PYTHONDONTWRITEBYTECODE=1 $(PYTHON) tools/cycles/

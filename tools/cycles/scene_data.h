@@ -21,4 +21,18 @@ extern const uint16_t bench_texture[256 * 256];
 /* Of the largest scene. */
 enum { BENCH_MOST_VERTICES = 8192, BENCH_MOST_NODES = 256 };
 
+/* The standard camera (host_tests/reference/scenes.h) for a picture of `width` x 3/4 width: a
+ * square of which the middle is seen. */
+static inline int bench_view(ew_transform *transform, uint16_t width)
+{
+    const ew_projection projection = { 65536, 65536, { INT32_C(1) << 29, -1 } };
+    const ew_viewport square = { 0, (int16_t)-(width / 8), width, width };
+    const ew_q16_16 units = INT32_C(64) << 16; /* q1.15 times 64 is 1/512 unit */
+    ew_mat34 model_view;
+    for (int i = 0; i < 3; i++) {
+        ew_row_from_q16_16(&model_view.row[i], i == 0 ? units : 0, i == 1 ? units : 0, i == 2 ? units : 0, 0);
+    }
+    return ew_transform_set(transform, &projection, &model_view, &square);
+}
+
 #endif
