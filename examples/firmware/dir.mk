@@ -47,6 +47,7 @@ $(F)/%.ewb: $(B)/scenes/%.glb $(BIN)/ew-bake
 
 PLAYER := examples/firmware/player.c
 OLED := $(addprefix examples/firmware/oled/,main.c ssd0323.c) $(PLAYER) $(F)/crate.c
+HASH := examples/firmware/hash/main.c examples/firmware/picture_hash.c $(PLAYER)
 CRATE_ROOM := -DPLAYER_NODES=2 -DPLAYER_VERTICES=16
 $(foreach t,$(call here,lm3s6965evb),$(call image,oled,$(t),$(OLED),$(CRATE_ROOM)))
 # wired or set up wrongly on purpose: firmware-test must notice
@@ -54,16 +55,16 @@ $(foreach t,$(call here,lm3s6965evb),$(call image,oled_no_dc,$(t),$(OLED),$(CRAT
 $(foreach t,$(call here,lm3s6965evb),$(call image,oled_window,$(t),$(OLED),$(CRATE_ROOM) -DPANEL_FIRST_COLUMN=1))
 $(foreach t,$(call here,rv32imc),$(call image,rgb565,$(t),examples/firmware/rgb565/main.c $(PLAYER) $(F)/courtyard.c))
 $(foreach t,$(BIG_TARGETS),$(call \
-  image,hash,$(t),examples/firmware/hash/main.c $(PLAYER) $(F)/courtyard.c))
+  image,hash,$(t),$(HASH) $(F)/courtyard.c))
 $(foreach t,$(BIG_TARGETS) $(LITTLE_TARGETS),$(call \
-  image,hash64x48,$(t),examples/firmware/hash/main.c $(PLAYER) $(F)/crate.c,\
+  image,hash64x48,$(t),$(HASH) $(F)/crate.c,\
   $(CRATE_ROOM) -DPICTURE_WIDTH=64 -DPICTURE_HEIGHT=48))
 
 # what each has room for: host_tests/firmware/same_bits.h
 room_avr := 0
 room_microbit := 1
 room_lm3s6965evb := 2
-SAME_BITS := $(wildcard host_tests/firmware/*.c)
+SAME_BITS := $(wildcard host_tests/firmware/*.c) examples/firmware/picture_hash.c
 $(F)/standard_scenes.c: $(C)/scene_data
 	@mkdir -p $(@D)
 	$< > $@
@@ -77,8 +78,8 @@ firmware:  ## set up what is missing; build the firmware examples for their boar
 firmware-images: $(FIRMWARE_IMAGES)
 	@:
 firmware-test: firmware  ## run them on emulated boards: pictures and hashes equal the host's
-	@$(MAKE) --no-print-directory firmware-pictures
-	@EW_BIN=$(BIN) EW_FIRMWARE=$(F) $(RUN) host_tests/firmware/test_firmware.py
-firmware-pictures: $(BIN)/ew-render $(F)/crate.ewb $(F)/courtyard.ewb
+	@$(MAKE) --no-print-directory firmware-test-tools
+	@EW_BIN=$(BIN) EW_FIRMWARE=$(F) EW_COUNT=$(C)/count.so $(RUN) host_tests/firmware/test_firmware.py
+firmware-test-tools: $(C)/count.so $(BIN)/ew-render $(F)/crate.ewb $(F)/courtyard.ewb
 	@:
-.PHONY: firmware firmware-images firmware-pictures firmware-test
+.PHONY: firmware firmware-images firmware-test-tools firmware-test

@@ -7,13 +7,6 @@
 #define PICTURE_HASH_START UINT32_C(0x811C9DC5)
 
 /* FNV-1a, 32 bits, over n 16-bit units, low byte first. Source: draft-eastlake-fnv. */
-static inline uint32_t picture_hash(uint32_t hash, const uint16_t *units, uint32_t n)
-{
-    while (n--) {
-        hash = (hash ^ (*units & 0xFFu)) * UINT32_C(0x01000193);
-        hash = (hash ^ (uint32_t)(*units++ >> 8)) * UINT32_C(0x01000193);
-    }
-    return hash;
-}
+uint32_t picture_hash(uint32_t hash, const uint16_t *units, uint32_t n);
 
 #endif

@@ -4,11 +4,18 @@ import os
 import shutil
 import socket
 import subprocess
+import sys
 import tempfile
+import time
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 IMAGES = os.path.join(ROOT, os.environ.get("EW_FIRMWARE", "build/release/firmware"))
+COUNT = os.path.join(ROOT, os.environ.get("EW_COUNT", "build/release/cycles/count.so"))
 LIMIT_SECONDS = 120
+
+sys.path.insert(0, os.path.join(ROOT, "tools", "cycles"))
+import count  # noqa: E402 - found by the line above
+import model  # noqa: E402
 
 ARM, RISC_V, AVR, HOST = "arm-none-eabi-", "riscv64-unknown-elf-", "avr-", ""
 MACHINES = {  # target: tools, emulator's words, what it is, KB of RAM, KB of flash
@@ -27,6 +34,11 @@ MACHINES = {  # target: tools, emulator's words, what it is, KB of RAM, KB of fl
 for _compiler in ("gcc", "clang"):
     for _level in ("O0", "O2", "O3"):
         MACHINES[f"host-{_compiler}-{_level}"] = (HOST, [], f"host, {_compiler} -{_level}", None, None)
+
+# Whose instruction timings stand for a target's (the Cortex-M0's are nearly the M0+'s; none are
+# published for M7 and M55), and the function that each example calls when a frame has been drawn.
+MODELS = {"microbit": "m0plus", "lm3s6965evb": "m3", **{t: t for t in ("m0plus", "m3", "m4", "m33", "rv32imc")}}
+FRAME_END = {"oled": "panel_home", "rgb565": "board_print", "hash": "picture_hash", "hash64x48": "picture_hash"}
 
 EMULATORS = {ARM: "qemu-system-arm", RISC_V: "qemu-system-riscv32", AVR: "simavr"}
 
@@ -56,11 +68,46 @@ def command(program, target):
             "-kernel", image(program, target)]
 
 
-def run(program, target):
+class Frames:
+    """Counts a program's instructions from player_draw to what it calls next, frame by frame.
+    `words` go to QEMU; afterwards `counted` has (instructions, cycles) of each frame, cycles being
+    (low, typical, high) or None."""
+
+    def __init__(self, program, target, folder):
+        self.target, self.image, self.out = target, image(program, target), os.path.join(folder, "regions")
+        self.words = []
+        if program in FRAME_END and MACHINES[target][0] in (ARM, RISC_V):
+            begin, end = self.addresses("player_draw", FRAME_END[program])
+            self.words = ["-plugin", f"{COUNT},begin={begin:#x},end={end:#x},edges=1,out={self.out}"]
+
+    def addresses(self, *names):
+        table = subprocess.run([MACHINES[self.target][0] + "nm", self.image], check=True, stdout=subprocess.PIPE, text=True)
+        symbols = {line.split()[2]: int(line.split()[0], 16) for line in table.stdout.splitlines() if len(line.split()) == 3}
+        return [symbols[name] for name in names]
+
+    def counted(self):
+        if not self.words:
+            return []
+        name = MODELS.get(self.target)
+        timings = model.Model(name, MACHINES[self.target][0] + "objdump", self.image) if name else None
+        return [(n, timings.cycles(blocks, edges) if timings else None) for n, blocks, edges in count.regions(self.out)]
+
+
+class Ran:
+    """A program that ran to its end: lines it printed, seconds it took, and Frames.counted."""
+
+    def __init__(self, program, target):
+        start = time.monotonic()
+        with tempfile.TemporaryDirectory() as folder:
+            frames = Frames(program, target, folder)
+            self.lines = run_avr(program, target) if MACHINES[target][0] == AVR else run(program, target, frames.words)
+            self.seconds = time.monotonic() - start
+            self.counted = frames.counted()
+
+
+def run(program, target, words):
     """The lines that a program prints; raises when it does not end well."""
-    if MACHINES[target][0] == AVR:
-        return run_avr(program, target)
-    done = subprocess.run(command(program, target), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+    done = subprocess.run(command(program, target) + words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True, timeout=LIMIT_SECONDS)
     if done.returncode != 0:
         raise RuntimeError(f"{program} on {target}: status {done.returncode}: {(done.stdout + done.stderr)[-400:]}")
@@ -94,16 +141,19 @@ def sizes(program, target):
 class Shown:
     """A board with a display: at each line `frame` of the program what the display shows is
     kept, by QEMU's screendump. Then has frames (width, height, RGB bytes), the other lines
-    that the program printed, what the emulator had to say, and the exit status."""
+    that the program printed, what the emulator had to say, the exit status, seconds and
+    Frames.counted."""
 
     def __init__(self, program, target):
         self.frames, self.lines = [], []
+        start = time.monotonic()
         with tempfile.TemporaryDirectory() as folder, socket.socket(socket.AF_UNIX) as server:
             server.bind(os.path.join(folder, "qmp"))
             server.listen(1)
             server.settimeout(LIMIT_SECONDS)
+            frames = Frames(program, target, folder)
             with open(os.path.join(folder, "errors"), "w+", encoding="utf-8") as errors, subprocess.Popen(
-                    command(program, target) + ["-qmp", "unix:" + os.path.join(folder, "qmp")],
+                    [*command(program, target), *frames.words, "-qmp", "unix:" + os.path.join(folder, "qmp")],
                     stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=errors) as board:
                 try:
                     self.follow(board, server, os.path.join(folder, "screen.ppm"))
@@ -112,6 +162,8 @@ class Shown:
                     board.kill()
                 errors.seek(0)
                 self.errors = errors.read()
+            self.seconds = time.monotonic() - start
+            self.counted = frames.counted()
 
     def follow(self, board, server, dump):
         with server.accept()[0] as link:

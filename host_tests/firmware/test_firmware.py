@@ -4,10 +4,10 @@ Writes build/report/hashes.csv (every hash of every target) and firmware.csv (wh
 program takes of flash, RAM and stack), and prints both in short."""
 import csv
 import os
+import re
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 
 import board
@@ -22,29 +22,52 @@ REFERENCE = "host-gcc-O2"
 LITTLE, MIDDLE, FULL = "microbit", "lm3s6965evb", [t for t in MACHINES if t not in ("microbit", "lm3s6965evb", "avr")]
 
 hashes = {}  # (target, scene, method, tolerance, size): hash
-figures = []  # program, target, flash, RAM, stack, seconds
+figures = []  # dictionaries with the columns below
+COLUMNS = ["program", "target", "flash_bytes", "ram_bytes", "stack_bytes", "frame_instructions", "frame_cycles_low",
+           "frame_cycles_typical", "frame_cycles_high"]
+
+
+def need(test, program, target):
+    reason = board.missing(program, target)
+    if reason:
+        (test.fail if os.environ.get("FIRMWARE_REQUIRE") else test.skipTest)(reason)
 
 
 def run(test, program, target):
-    """Runs, notes flash, RAM and stack, and returns the other lines."""
-    reason = board.missing(program, target)
-    if reason:
-        test.skipTest(reason)
-    start = time.monotonic()
-    lines = board.run(program, target)
-    note(program, target, lines, time.monotonic() - start)
-    return [line for line in lines if line != "end" and not line.startswith("stack ")]
+    """Runs, notes flash, RAM, stack and counts, and returns the other lines."""
+    need(test, program, target)
+    ran = board.Ran(program, target)
+    note(test, program, target, ran)
+    return [line for line in ran.lines if line != "end" and not line.startswith("stack ")]
 
 
-def note(program, target, lines, seconds):
-    stack = [int(line.split()[1]) for line in lines if line.startswith("stack ")]
+def note(test, program, target, ran):
     if target.startswith("host"):
         return
+    stack = [int(line.split()[1]) for line in ran.lines if line.startswith("stack ")]
     flash, ram = board.sizes(program, target)
-    room = 1024 * MACHINES[target][3]
-    if len(stack) != 1 or not 0 < stack[0] < room - ram:
-        raise AssertionError(f"{program} on {target}: stack {stack} of {room - ram} bytes")
-    figures.append((program, target, flash, ram, stack[0], seconds))
+    test.assertEqual(len(stack), 1)
+    test.assertTrue(0 < stack[0] < 1024 * MACHINES[target][3] - ram, stack)
+    for used, limit in zip((flash, ram, stack[0]), LIMITS.get((program, target), ())):
+        test.assertLessEqual(used, limit, "more than docs/porting.md says")
+    instructions, cycles = max(ran.counted, key=lambda frame: frame[0], default=("na", None))
+    figures.append(dict(zip(COLUMNS, (program, target, flash, ram, stack[0], instructions, *(cycles or ["na"] * 3))),
+                        seconds=ran.seconds))
+
+
+def stated():
+    """The table `What they take` of docs/porting.md: (program, target) to bytes of flash, RAM and stack."""
+    limits = {}
+    with open(os.path.join(ROOT, "docs", "porting.md"), encoding="utf-8") as page:
+        for line in page:
+            cells = [cell.strip() for cell in line.strip("| \n").split("|")]
+            if len(cells) == 6 and cells[0].startswith("`"):
+                for target in re.findall("`(\\w+)`", cells[1]):
+                    limits[cells[0].strip("`"), target] = [1024 * float(cell.removesuffix(" KB")) for cell in cells[3:]]
+    return limits
+
+
+LIMITS = stated()
 
 
 def same_bits(test, target):
@@ -139,9 +162,7 @@ class Oled(unittest.TestCase):
     FRAMES = 20
 
     def play(self, program):
-        reason = board.missing(program, "lm3s6965evb")
-        if reason:
-            self.skipTest(reason)
+        need(self, program, "lm3s6965evb")
         return board.Shown(program, "lm3s6965evb")
 
     def differing(self, shown):
@@ -161,12 +182,11 @@ class Oled(unittest.TestCase):
         return total
 
     def test_every_frame_is_the_hosts(self):
-        start = time.monotonic()
         shown = self.play("oled")
         self.assertEqual((shown.status, self.differing(shown)), (0, 0))
         self.assertNotIn("ssd0323", shown.errors)
         self.assertEqual(len({frame[2] for frame in shown.frames}), self.FRAMES)
-        note("oled", "lm3s6965evb", shown.lines, time.monotonic() - start)
+        note(self, "oled", "lm3s6965evb", shown)
 
     def test_without_the_dc_line_it_is_noticed(self):
         shown = self.play("oled_no_dc")
@@ -178,14 +198,24 @@ class Oled(unittest.TestCase):
         self.assertGreater(self.differing(shown), 1000)
 
 
+class Stated(unittest.TestCase):
+    """What docs/porting.md says of sizes; `note` holds each program that runs to it."""
+
+    def test_every_example_has_its_line(self):
+        self.assertEqual(set(LIMITS), {("hash64x48", "microbit"), ("oled", "lm3s6965evb"), ("rgb565", "rv32imc"),
+                                       *(("hash", target) for target in ("m3", "m4", "m7", "m33", "m55"))})
+
+    def test_the_microbit_fits(self):
+        flash, ram, stack = LIMITS["hash64x48", "microbit"]
+        self.assertLessEqual(flash, 64 * 1024)
+        self.assertLessEqual(ram + stack, 16 * 1024)
+
+
 class Rgb565(unittest.TestCase):
     """A linear frame buffer on RV32IMC."""
 
     def test_every_frame_is_the_hosts(self):
-        reason = board.missing("rgb565", "rv32imc")
-        if reason:
-            self.skipTest(reason)
-        start = time.monotonic()
+        need(self, "rgb565", "rv32imc")
         shown = board.Shown("rgb565", "rv32imc")
         self.assertEqual((shown.status, len(shown.frames)), (0, 4))
         for frame, rows in zip(shown.frames, host_pictures("courtyard.ewb", "320x240", 4, 4)):
@@ -193,7 +223,7 @@ class Rgb565(unittest.TestCase):
             shows, wanted = rgb565(frame[2]), rgb565(b"".join(rows))
             self.assertEqual(sum(a != b for a, b in zip(shows, wanted)), 0)
         self.assertEqual(len({frame[2] for frame in shown.frames}), 4)
-        note("rgb565", "rv32imc", shown.lines, time.monotonic() - start)
+        note(self, "rgb565", "rv32imc", shown)
 
 
 def write_csv(name, head, rows):
@@ -209,7 +239,7 @@ def tearDownModule():
     write_csv("hashes.csv", ["target", "scene", "method", "tolerance_px", "size", "hash"],
               [(t, scene, method, cell(tol) if tol == "-" else f"{int(tol) / 16:g}", cell(size), value)
                for (t, scene, method, tol, size), value in hashes.items()])
-    write_csv("firmware.csv", ["program", "target", "flash_bytes", "ram_bytes", "stack_bytes"], [f[:5] for f in figures])
+    write_csv("firmware.csv", COLUMNS, [[row[name] for name in COLUMNS] for row in figures])
     reference = {key[1:]: value for key, value in hashes.items() if key[0] == REFERENCE}
     print(f"{'target':34s}{'hashes':>8s}{'equal':>8s}")
     for target in MACHINES:
@@ -217,9 +247,11 @@ def tearDownModule():
         equal = sum(reference.get(case) == value for case, value in mine.items())
         if mine:
             print(f"{MACHINES[target][2]:34s}{len(mine):8d}{equal:8d}")
-    print(f"{'program':12s}{'on':34s}{'flash':>8s}{'RAM':>8s}{'stack':>7s}{'s':>6s}")
-    for program, target, flash, ram, stack, seconds in figures:
-        print(f"{program:12s}{MACHINES[target][2]:34s}{flash:8d}{ram:8d}{stack:7d}{seconds:6.1f}")
+    print(f"{'program':11s}{'on':31s}{'flash':>8s}{'RAM':>8s}{'stack':>7s}{'instructions':>14s}{'cycles':>12s}{'s':>6s}")
+    for row in figures:
+        print(f"{row['program']:11s}{MACHINES[row['target']][2]:31s}{row['flash_bytes']:8}{row['ram_bytes']:8}"
+              f"{row['stack_bytes']:7}{row['frame_instructions']:>14}{row['frame_cycles_typical']:>12}{row['seconds']:6.1f}")
+    print("bytes; instructions and modelled cycles (typical) of the longest frame; seconds of emulation")
 
 
 if __name__ == "__main__":
