@@ -14,11 +14,13 @@ static ew_screen_vertex screen[MOST_VERTICES];
 static ew_raster raster;
 static ew_geometry geometry;
 
-static void draw(const bench_scene *s, const bench_method *method, uint16_t tolerance, uint16_t width, const char *size)
+static void draw(const bench_scene *s, const bench_method *method, uint16_t tolerance, uint16_t width,
+                 const char *size)
 {
     const uint16_t height = (uint16_t)(width * 3u / 4u);
     const uint32_t pixels = (uint32_t)width * height;
-    const ew_target target = { .colour = same_colour, .depth = same_depth, .width = width, .height = height, .stride = width };
+    const ew_target target = { .colour = same_colour, .depth = same_depth,
+                               .width = width, .height = height, .stride = width };
     const ew_texture texture = { .texels = bench_texture, .width = 256, .height = 256 };
     const ew_material material = { .texture = &texture, .tolerance = tolerance, .rung = method->rung };
     int32_t result = ew_raster_init(&raster, &target);

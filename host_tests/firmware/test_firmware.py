@@ -47,7 +47,7 @@ def note(test, program, target, ran):
     stack = [int(line.split()[1]) for line in ran.lines if line.startswith("stack ")]
     flash, ram = board.sizes(program, target)
     test.assertEqual(len(stack), 1)
-    test.assertTrue(0 < stack[0] < 1024 * MACHINES[target][3] - ram, stack)
+    test.assertTrue(0 < stack[0] < 1024 * MACHINES[target].ram - ram, stack)
     for used, limit in zip((flash, ram, stack[0]), LIMITS.get((program, target), ())):
         test.assertLessEqual(used, limit, "more than docs/porting.md says")
     instructions, cycles = max(ran.counted, key=lambda frame: frame[0], default=("na", None))
@@ -56,14 +56,15 @@ def note(test, program, target, ran):
 
 
 def stated():
-    """The table `What they take` of docs/porting.md: (program, target) to bytes of flash, RAM and stack."""
+    """The table of docs/porting.md: (program, target) to bytes of flash, RAM and stack."""
     limits = {}
     with open(os.path.join(ROOT, "docs", "porting.md"), encoding="utf-8") as page:
         for line in page:
             cells = [cell.strip() for cell in line.strip("| \n").split("|")]
             if len(cells) == 6 and cells[0].startswith("`"):
-                for target in re.findall("`(\\w+)`", cells[1]):
-                    limits[cells[0].strip("`"), target] = [1024 * float(cell.removesuffix(" KB")) for cell in cells[3:]]
+                kilobytes = [float(cell.removesuffix(" KB")) for cell in cells[3:]]
+                for target in re.findall(r"`(\w+)`", cells[1]):
+                    limits[cells[0].strip("`"), target] = [1024 * n for n in kilobytes]
     return limits
 
 
@@ -246,11 +247,13 @@ def tearDownModule():
         mine = {key[1:]: value for key, value in hashes.items() if key[0] == target}
         equal = sum(reference.get(case) == value for case, value in mine.items())
         if mine:
-            print(f"{MACHINES[target][2]:34s}{len(mine):8d}{equal:8d}")
-    print(f"{'program':11s}{'on':31s}{'flash':>8s}{'RAM':>8s}{'stack':>7s}{'instructions':>14s}{'cycles':>12s}{'s':>6s}")
+            print(f"{MACHINES[target].name:34s}{len(mine):8d}{equal:8d}")
+    line = "{:11}{:31}{:>8}{:>8}{:>7}{:>14}{:>12}{:>6}"
+    print(line.format("program", "on", "flash", "RAM", "stack", "instructions", "cycles", "s"))
     for row in figures:
-        print(f"{row['program']:11s}{MACHINES[row['target']][2]:31s}{row['flash_bytes']:8}{row['ram_bytes']:8}"
-              f"{row['stack_bytes']:7}{row['frame_instructions']:>14}{row['frame_cycles_typical']:>12}{row['seconds']:6.1f}")
+        print(line.format(row["program"], MACHINES[row["target"]].name, row["flash_bytes"], row["ram_bytes"],
+                          row["stack_bytes"], row["frame_instructions"], row["frame_cycles_typical"],
+                          f"{row['seconds']:.1f}"))
     print("bytes; instructions and modelled cycles (typical) of the longest frame; seconds of emulation")
 
 

@@ -21,6 +21,6 @@ void reset(void)
 void fault(void) { board_exit(99); }
 
 __attribute__((section(".vectors"), used)) static void *const vectors[16] = {
-    _estack, (void *)reset, (void *)fault, (void *)fault, (void *)fault, (void *)fault, (void *)fault, (void *)fault,
-    0, 0, 0, (void *)fault, (void *)fault, 0, (void *)fault, (void *)fault
+    _estack, (void *)reset, (void *)fault, (void *)fault, (void *)fault, (void *)fault, (void *)fault,
+    (void *)fault, 0, 0, 0, (void *)fault, (void *)fault, 0, (void *)fault, (void *)fault
 };

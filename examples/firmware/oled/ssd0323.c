@@ -77,7 +77,10 @@ void panel_init(void)
 
 void panel_home(void)
 {
-    static const uint8_t commands[] = { 0x15, PANEL_FIRST_COLUMN, PANEL_ROW_BYTES - 1, 0x75, 0, PANEL_HEIGHT - 1 };
+    static const uint8_t commands[] = {
+        0x15, PANEL_FIRST_COLUMN, PANEL_ROW_BYTES - 1, /* columns */
+        0x75, 0, PANEL_HEIGHT - 1                      /* rows    */
+    };
     send(commands, sizeof commands, 0);
 }
 
