@@ -18,6 +18,10 @@ static void any_corner(generator *g, ew_raster_vertex *corner, int32_t first_row
     corner->w -= random32(g) % (corner->w / 2u);
     corner->u = random_between(g, -64 * INT32_C(4096), 64 * INT32_C(4096));
     corner->v = random_between(g, -64 * INT32_C(4096), 64 * INT32_C(4096));
+    uint32_t colour = random32(g);
+    corner->colour.r = (uint8_t)colour;
+    corner->colour.g = (uint8_t)(colour >> 8);
+    corner->colour.b = (uint8_t)(colour >> 16);
 }
 
 static uint32_t draw(const ew_material *material)
@@ -48,18 +52,24 @@ void triangle_bits(void)
 {
     static const struct {
         const char *method;
-        uint8_t rung, tolerance;
+        uint8_t rung, tolerance, flags;
     } cases[] = {
-        { "constant", EW_RUNG_CONSTANT, 0 }, { "affine", EW_RUNG_AFFINE, 0 }, { "table", EW_RUNG_TABLE, 0 },
-        { "exact", EW_RUNG_EXACT, 0 }, { "runs", EW_RUNG_RUNS, 4 }, { "auto", EW_RUNG_AUTO, 0 },
-        { "auto", EW_RUNG_AUTO, 4 }, { "auto", EW_RUNG_AUTO, 16 },
+        { "constant", EW_RUNG_CONSTANT, 0, 0 },
+        { "affine", EW_RUNG_AFFINE, 0, 0 },
+        { "table", EW_RUNG_TABLE, 0, 0 },
+        { "exact", EW_RUNG_EXACT, 0, 0 },
+        { "runs", EW_RUNG_RUNS, 4, 0 },
+        { "auto", EW_RUNG_AUTO, 0, 0 },
+        { "auto", EW_RUNG_AUTO, 4, 0 },
+        { "auto", EW_RUNG_AUTO, 16, 0 },
+        { "without-depth", EW_RUNG_AUTO, 4, EW_NO_DEPTH_TEST | EW_NO_DEPTH_WRITE },
     };
     generator g = { 1 };
     for (int i = 0; i < TEXTURE * TEXTURE; i++) texels[i] = (uint16_t)random32(&g);
     const ew_texture texture = { .texels = texels, .width = TEXTURE, .height = TEXTURE };
     for (unsigned i = 0; i < sizeof cases / sizeof *cases; i++) {
         const ew_material material = { .texture = &texture, .colour = 0xFBE0, .tolerance = cases[i].tolerance,
-                                       .rung = cases[i].rung, .flags = EW_DOUBLE_SIDED };
+                                       .rung = cases[i].rung, .flags = EW_DOUBLE_SIDED | cases[i].flags };
         print_hash("triangles", cases[i].method, cases[i].tolerance, "64x48", draw(&material));
     }
 }
