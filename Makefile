@@ -44,6 +44,7 @@ CORE_SRCS :=
 PROGRAMS  :=
 include fixed/dir.mk
 include src/dir.mk
+include examples/firmware/board/boards.mk
 include tools/dir.mk
 include examples/dir.mk
 include host_tests/dir.mk

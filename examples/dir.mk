@@ -1,9 +1,9 @@
 # The sample scene, and the demo that takes a scene all the way to a display.
 COURTYARD := $(B)/scenes/courtyard.ewb
 LAB_SCENE ?= $(COURTYARD)
-$(B)/scenes/%.glb: examples/scenes/%.py
+$(B)/scenes/%.glb: examples/scenes/%.py examples/scenes/glb.py
 	@mkdir -p $(@D)
-	$(PYTHON) $< -o $@
+	$(PYTHON) -B $< -o $@
 $(B)/scenes/%.ewb: $(B)/scenes/%.glb $(BIN)/ew-bake
 	$(BIN)/ew-bake $< -o $@
 
@@ -32,3 +32,5 @@ $(BIN)/fills: $(B)/examples/fills.o $(addprefix $(B)/tools/common/,image.o whole
 	@mkdir -p $(@D)
 	$(CC) $(HOST_CFLAGS) $(LDFLAGS) -o $@ $^ -lpng -lz
 .PHONY: example-fills
+
+include examples/firmware/dir.mk

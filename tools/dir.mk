@@ -10,7 +10,8 @@ include tools/bake/dir.mk
 include tools/stream/dir.mk
 include tools/lab/dir.mk
 include tools/cycles/dir.mk
+include tools/report/dir.mk
 
-setup-demo setup-test setup-lab setup-count setup-cross setup-lint: setup-%:  ## install the packages of that goal
+setup-demo setup-test setup-lab setup-count setup-report setup-firmware setup-cross setup-lint: setup-%:  ## install the packages of that goal
 	@SETUP=$(SETUP) tools/setup/setup.sh $*
-.PHONY: setup-demo setup-test setup-lab setup-count setup-cross setup-lint
+.PHONY: setup-demo setup-test setup-lab setup-count setup-report setup-firmware setup-cross setup-lint

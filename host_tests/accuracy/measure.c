@@ -9,6 +9,7 @@
 typedef struct candidate {
     double depth;
     double low[2], high[2]; /* u and v that the colour may come from                            */
+    double u, v;            /* at the pixel's centre                                            */
     uint16_t colour;
     int8_t textured;
     ew_texture texture;
@@ -19,8 +20,9 @@ enum { CANDIDATES = 6 }; /* the nearest ones of a pixel */
 typedef struct pixel {
     candidate kept[CANDIDATES];
     int count;
-    uint16_t hits;
+    uint16_t hits, seen; /* fragments; the nearest one's depth                                  */
     uint8_t truth;
+    float displacement, texels; /* of the nearest one                                           */
 } pixel;
 
 typedef struct logged_triangle {
@@ -39,12 +41,13 @@ static struct {
     pixel *pixels;
     uint8_t *exact, *drawn; /* of the source triangle at hand: how often each pixel is hit      */
     measures m;
-    double depth_sum, u_sum, v_sum;
+    double depth_sum, u_sum, v_sum, disp_sum;
     logged_triangle triangle[16];
     int triangles, rung, active;
     logged_fragment *fragment;
     size_t fragments, fragment_room;
 } now;
+static measure_maps wanted;
 
 void ew_trace_triangle(const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *c,
                        int rung)
@@ -145,6 +148,8 @@ static void mark_exact(const ew_raster *raster, const ref_triangle *truth, int *
                 c.textured = raster->material.texture != NULL;
                 c.texture = raster->texture;
                 if (c.textured) {
+                    ref_sample s = ref_sample_at(truth, x + 0.5, y + 0.5);
+                    c.u = s.u, c.v = s.v;
                     attribute_range(truth, x + 0.5, y + 0.5, raster->material.tolerance / 16.0, c.low, c.high);
                 }
                 keep(index_of(x, y), &c);
@@ -159,6 +164,38 @@ static double uv_error(ew_q20_12 core, double exact, int log2_size)
     return remainder(ldexp(core, -12) - exact, ldexp(1, log2_size));
 }
 
+/* Where one attribute of a triangle in perspective has a given value is a straight line on
+ * the screen: this is how far away the nearest point is whose u or v (as the number of the
+ * reference's coefficients) lies within e of `drawn`. */
+static double displacement(const ref_triangle *t, double px, double py, double drawn, double exact, int v)
+{
+    const double e = 1.0 / 64;
+    if (fabs(drawn - exact) <= e) return 0;
+    double value = drawn > exact ? drawn - e : drawn + e, line[3] = { 0, 0, 0 };
+    for (int i = 0; i < 3; i++) {
+        for (int k = 0; k < 3; k++) line[k] += t->b[i][k] * ((v ? t->corner[i].v : t->corner[i].u) - value);
+    }
+    return fabs(line[0] * px + line[1] * py + line[2]) / hypot(line[0], line[1]);
+}
+
+/* The bound of a run over its length squared: |dw| / (4 w), w the 1/z at the pixel. */
+static double run_bound(const ref_triangle *t, const ref_sample *s, double px, double py)
+{
+    return fabs(1 / ref_sample_at(t, px + 1, py).z - 1 / s->z) * s->z / 4;
+}
+
+static void bound_triangle(const logged_triangle *t)
+{
+    double w_min = HUGE_VAL, widest = 0;
+    for (int i = 0; i < 3; i++) {
+        const ew_raster_vertex *a = &t->corner[i], *b = &t->corner[(i + 1) % 3];
+        w_min = fmin(w_min, a->w);
+        widest = fmax(widest, ldexp(hypot(a->x - b->x, a->y - b->y), -12) * fabs((double)a->w - b->w));
+        now.m.reach = fmax(now.m.reach, ldexp(fmax(fabs((double)a->u - b->u), fabs((double)a->v - b->v)), -12));
+    }
+    now.m.affine_bound = fmax(now.m.affine_bound, widest / (3 * w_min));
+}
+
 static void judge_fragment(const logged_fragment *f, const ref_triangle *truth, const ew_raster *raster)
 {
     now.m.fragments++;
@@ -166,6 +203,8 @@ static void judge_fragment(const logged_fragment *f, const ref_triangle *truth, 
     now.drawn[index_of(f->x, f->y)]++;
     pixel *p = &now.pixels[index_of(f->x, f->y)];
     if (p->hits++) now.m.hit_again++;
+    int is_seen = p->hits == 1 || f->depth > p->seen;
+    if (is_seen) p->seen = f->depth, p->displacement = p->texels = -1;
     ref_sample s = ref_sample_at(truth, f->x + 0.5, f->y + 0.5);
     double depth = 65536 * truth->near_z / s.z;
     if (depth >= 1 && depth < 65535) {
@@ -190,6 +229,13 @@ static void judge_fragment(const logged_fragment *f, const ref_triangle *truth, 
     now.m.uv_off = fmax(now.m.uv_off, fmax(s.v + ev - high[1], low[1] - (s.v + ev)));
     now.u_sum += eu * eu;
     now.v_sum += ev * ev;
+    double du = displacement(truth, f->x + 0.5, f->y + 0.5, s.u + eu, s.u, 0);
+    double d = fmax(du, displacement(truth, f->x + 0.5, f->y + 0.5, s.v + ev, s.v, 1));
+    now.m.disp_max = fmax(now.m.disp_max, d);
+    now.m.within_e += d == 0;
+    now.disp_sum += d * d;
+    now.m.run_bound = fmax(now.m.run_bound, run_bound(truth, &s, f->x + 0.5, f->y + 0.5));
+    if (is_seen) p->displacement = (float)d, p->texels = (float)fmax(fabs(eu), fabs(ev));
 }
 
 /* Pixels that the unsnapped triangle covers. A triangle that crosses the near plane may
@@ -221,6 +267,7 @@ static void judge_triangle(const ew_raster *raster, const ref_triangle *truth)
 {
     int box[4] = { 1 << 20, 1 << 20, -1, -1 };
     mark_exact(raster, truth, box);
+    for (int k = 0; k < now.triangles && raster->material.texture; k++) bound_triangle(&now.triangle[k]);
     for (size_t i = 0; i < now.fragments; i++) {
         const logged_fragment *f = &now.fragment[i];
         judge_fragment(f, truth, raster);
@@ -235,6 +282,18 @@ static void judge_triangle(const ew_raster *raster, const ref_triangle *truth)
             now.exact[at] = now.drawn[at] = 0;
         }
     }
+}
+
+/* Judges what was traced since the source triangle began. */
+static void judge_drawn(const ew_raster *raster, const ref_corner corner[3])
+{
+    ref_triangle truth;
+    if (!ref_triangle_init(&truth, &now.camera, corner)) {
+        now.m.wrong_px += (long)now.fragments; /* drawn, though seen edge-on */
+        return;
+    }
+    if (now.triangles || now.fragments) judge_triangle(raster, &truth);
+    mark_truth(&truth, raster->material.flags & EW_DOUBLE_SIDED);
 }
 
 int measure_mesh(ew_geometry *geometry, const double mv[3][4], const ew_mesh *mesh)
@@ -254,15 +313,25 @@ int measure_mesh(ew_geometry *geometry, const double mv[3][4], const ew_mesh *me
         now.fragments = 0;
         int32_t result = ew_draw_triangles(geometry, &one);
         if (result < 0) return (int)result;
-        ref_triangle truth;
-        if (!ref_triangle_init(&truth, &now.camera, corner)) {
-            now.m.wrong_px += (long)now.fragments; /* drawn, though seen edge-on */
-            continue;
-        }
-        if (now.triangles || now.fragments) judge_triangle(geometry->raster, &truth);
-        mark_truth(&truth, geometry->raster->material.flags & EW_DOUBLE_SIDED);
+        judge_drawn(geometry->raster, corner);
     }
     return 0;
+}
+
+int measure_triangle(ew_raster *raster, const ew_raster_vertex *const v[3])
+{
+    ref_corner corner[3];
+    const ref_camera *c = &now.camera;
+    for (int k = 0; k < 3; k++) {
+        double z = c->near_z / ldexp(v[k]->w, -31), x = ldexp(v[k]->x, -12), y = ldexp(v[k]->y, -12);
+        corner[k] = (ref_corner){ ((x - c->left) * 2 / c->width - 1) * z / c->fx, (1 - (y - c->top) * 2 / c->height) * z / c->fy, z,
+                                  ldexp(v[k]->u, -12), ldexp(v[k]->v, -12) };
+    }
+    now.triangles = 0;
+    now.fragments = 0;
+    int result = ew_raster_triangle(raster, v[0], v[1], v[2]);
+    if (result >= 0) judge_drawn(raster, corner);
+    return result < 0 ? result : 0;
 }
 
 /* ---- the picture ---- */
@@ -294,8 +363,32 @@ static int pixel_right(const pixel *p, uint16_t colour, double border)
     return 0;
 }
 
+static uint16_t reference_colour(const pixel *p)
+{
+    if (p->count == 0) return now.background;
+    const candidate *c = &p->kept[0];
+    if (!c->textured) return c->colour;
+    const uint16_t *texels = c->texture.texels;
+    long long u = (long long)floor(c->u) & (c->texture.width - 1), v = (long long)floor(c->v) & (c->texture.height - 1);
+    return texels[v * c->texture.width + u];
+}
+
+void measure_want_maps(const measure_maps *maps) { wanted = *maps; }
+
+static void write_maps(const measure_maps *maps)
+{
+    for (size_t i = 0; i < pixel_count(); i++) {
+        const pixel *p = &now.pixels[i];
+        if (maps->reference) maps->reference[i] = reference_colour(p);
+        if (maps->displacement) maps->displacement[i] = p->hits ? p->displacement : -1;
+        if (maps->texels) maps->texels[i] = p->hits ? p->texels : -1;
+    }
+}
+
 void measure_end(measures *result, double border)
 {
+    write_maps(&wanted);
+    memset(&wanted, 0, sizeof wanted);
     for (int y = 0; y < now.target.height; y++) {
         for (int x = 0; x < now.target.width; x++) {
             const pixel *p = &now.pixels[index_of(x, y)];
@@ -309,6 +402,7 @@ void measure_end(measures *result, double border)
     now.m.depth_rms = judged ? sqrt(now.depth_sum / (double)judged) : 0;
     now.m.u_rms = now.m.textured ? sqrt(now.u_sum / (double)now.m.textured) : 0;
     now.m.v_rms = now.m.textured ? sqrt(now.v_sum / (double)now.m.textured) : 0;
+    now.m.disp_rms = now.m.textured ? sqrt(now.disp_sum / (double)now.m.textured) : 0;
     *result = now.m;
     free(now.pixels);
     free(now.exact);

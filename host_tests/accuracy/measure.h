@@ -26,7 +26,14 @@ typedef struct measures {
     double uv_off;         /* texels, the larger of u and v: how far outside of the exact values over
                               the disc of the material's tolerance + 1/256 px                   */
     long textured;         /* how many those are                                              */
-    long rung[8];          /* fragments by ew_rung                                            */
+    double disp_max, disp_rms; /* px: how far from the pixel's centre the drawn u and v belong, of which
+                              the farther counts, after removing e = 1/64 texel               */
+    long within_e;         /* textured fragments that needed only e: displacement 0           */
+    /* What the formulas of docs/error-bound.md make of the textured triangles drawn: the bound
+     * of the affine rung in px; that of a run of N pixels over N^2; the longest way from a
+     * corner in texels, which a reciprocal's relative error is a part of. */
+    double affine_bound, run_bound, reach;
+    long rung[EW_RUNG_COUNT]; /* fragments by ew_rung                                         */
     long colour_px;        /* pixels whose colour no fragment may have (see measure_end)       */
 } measures;
 
@@ -37,6 +44,20 @@ void measure_begin(const ew_target *target, const ref_camera *camera, uint16_t b
  * set. `model_view` takes a vertex (as q1.15) to view space in double. Returns 0, or the
  * first error of ew_draw_triangles. */
 int measure_mesh(ew_geometry *geometry, const double model_view[3][4], const ew_mesh *mesh);
+
+/* Draws one triangle by ew_raster_triangle; the camera's place does not matter, as the corners are
+ * taken where they are. Returns 0 or its error. */
+int measure_triangle(ew_raster *raster, const ew_raster_vertex *const corners[3]);
+
+/* Pictures of what was judged, width * height each, any of them NULL: the colour that exact
+ * coverage, depth, u and v give, and of the fragment that is seen its displacement (px, -1
+ * where there is none) and its error in texels (the larger of u and v, likewise). */
+typedef struct measure_maps {
+    uint16_t *reference;
+    float *displacement, *texels;
+} measure_maps;
+/* Asks the next measure_end to fill them. */
+void measure_want_maps(const measure_maps *maps);
 
 /* Ends the picture. A pixel's colour is right when it is that of a fragment within one
  * depth unit of the nearest, at a texel that the exact u and v touch over the disc of the

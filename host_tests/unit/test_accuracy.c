@@ -80,6 +80,8 @@ static void exact_rung(void **state)
         uv_limits(&m, 0.002, 1.0 / 64);
         assert_int_equal(m.rung[EW_RUNG_EXACT] + m.rung[EW_RUNG_TABLE], m.fragments);
         assert_true(m.u_rms <= 0.02 && m.v_rms <= 0.02);
+        assert_int_equal(m.within_e, m.fragments);
+        assert_true(m.disp_max == 0);
     }
 }
 
@@ -105,6 +107,9 @@ static void runs_keep_their_tolerance_and_use_it(void **state)
         assert_true(m.uv_off <= 1.0 / 64);
         /* v changes by up to 9 texels from pixel to pixel here; rms displacement is 0.2 of t and more */
         assert_true(m.v_rms > 0.02 * tolerance);
+        test_context("tolerance %d/16: displacement %.4f", tolerance, m.disp_max);
+        assert_true(m.disp_max <= tolerance / 16.0 + 1.0 / 256);
+        assert_true(m.disp_max > 0.7 * tolerance / 16);
     }
 }
 
@@ -132,6 +137,7 @@ static void automatic_choice_keeps_its_tolerance(void **state)
             measures m = draw(name, EW_RUNG_AUTO, tolerances[k]);
             hold(name, &m);
             assert_true(m.uv_off <= 1.0 / 64);
+            assert_true(m.disp_max <= tolerances[k] / 16.0 + 1.0 / 256);
             /* E, and a corner of C, reach so far that 32-bit steps would be felt */
             long exact = m.rung[EW_RUNG_EXACT];
             assert_int_equal(m.rung[EW_RUNG_AFFINE] + m.rung[EW_RUNG_RUNS] + exact, m.fragments);
@@ -157,6 +163,42 @@ static void affine_is_noticed(void **state)
     assert_true(m.depth_max <= 1);
     assert_true(m.v_rms > 50);
     assert_true(m.colour_px > 10000);
+    assert_true(m.disp_max > 50);
+    /* the sphere's triangles are small: there the bound means something, and holds */
+    m = draw('B', EW_RUNG_AFFINE, 0);
+    test_context("displacement %.4f, bound %.4f", m.disp_max, m.affine_bound);
+    assert_true(m.disp_max <= m.affine_bound);
+    assert_true(m.disp_max > m.affine_bound / 2);
+}
+
+/* The referee's own picture and maps: background where nothing is, and where the drawn texel
+ * is another one than the exact, the drawn value was off. */
+static void maps_say_what_differs(void **state)
+{
+    (void)state;
+    enum { PIXELS = STANDARD_WIDTH * STANDARD_HEIGHT };
+    static uint16_t reference[PIXELS];
+    static float displacement[PIXELS], off[PIXELS];
+    const measure_maps maps = { reference, displacement, off };
+    measure_want_maps(&maps);
+    measures m = draw('B', EW_RUNG_AUTO, 4);
+    long textured = 0, differ = 0;
+    float most = 0;
+    for (int i = 0; i < PIXELS; i++) {
+        test_context("pixel %d: %04x, exact %04x, displacement %g, %g texels", i, colour[i], reference[i], displacement[i], off[i]);
+        if (displacement[i] < 0) {
+            assert_int_equal(reference[i], 0x1234);
+            assert_int_equal(colour[i], 0x1234);
+            continue;
+        }
+        textured++;
+        differ += reference[i] != colour[i];
+        assert_true(reference[i] == colour[i] || off[i] > 0);
+        if (displacement[i] > most) most = displacement[i];
+    }
+    assert_int_equal(textured, m.covered_px);
+    assert_true(differ > 0 && differ < textured / 20);
+    assert_true(most == (float)m.disp_max); /* no overdraw in this scene */
 }
 
 /* scenes.c against the generator of the published figures, where that is at hand. */
@@ -241,6 +283,7 @@ int main(void)
         TEST(tolerance_zero_is_exact),
         TEST(automatic_choice_keeps_its_tolerance),
         TEST(affine_is_noticed),
+        TEST(maps_say_what_differs),
         TEST(scenes_are_the_published_ones),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,98 +1,186 @@
-/* What is counted: transform, culling, set-up and spans of a standard scene, once for each
- * case of bench_cases.inc. The same file is firmware and host program; the picture's hash
- * goes where a debugger or main's caller can see it.
+/* What is counted: transform, culling, set-up and spans of each scene (posing its nodes, where it
+ * is a baked one), once for each case of cases.h. The same file is firmware and host program; both
+ * print the hash of every picture, which is the same on all targets.
  *
- * On the host: `bench N` draws case N (callgrind's --toggle-collect=bench_draw counts it),
- * `bench --list` names the cases. */
+ * On the host: `bench --list` names the cases and says how many fragments each scene has, when
+ * it is built with EW_TRACE = 1. */
+#include "cases.h"
 #include "edgewalk/geometry.h"
+#include "edgewalk/scene.h"
 #include "scene_data.h"
 
-#if __STDC_HOSTED__
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-#endif
+enum { W = BENCH_WIDTH, H = BENCH_HEIGHT, BACKGROUND = 0 };
 
-enum { W = 320, H = 240 };
-
-typedef struct bench_case {
-    const bench_scene *scene;
-    const char *method;
-    uint16_t tolerance; /* 1/16 px */
-    uint8_t rung;
-} bench_case;
-
-static const bench_case cases[] = {
-#define SCENES(method, rung, tolerance) \
-    { &bench_a, method, tolerance, rung }, { &bench_b, method, tolerance, rung }, { &bench_c, method, tolerance, rung }, \
-    { &bench_d, method, tolerance, rung }, { &bench_e, method, tolerance, rung }
-#include "bench_cases.inc"
-};
-enum { CASES = sizeof cases / sizeof *cases };
+/* What the port gives: the board in firmware, the end of this file on the host. */
+void bench_line(const char *text);
 
 static uint16_t colour[W * H], depth[W * H];
 static ew_screen_vertex screen[BENCH_MOST_VERTICES];
+static ew_mat34 world[BENCH_MOST_NODES];
 static ew_raster raster;
 static ew_geometry geometry;
-
-uint32_t bench_hash;
+static ew_scene scene;
 
 /* Counted from its first instruction to the first of bench_end. */
-__attribute__((noinline)) int32_t bench_draw(const bench_scene *s);
-__attribute__((noinline)) void bench_end(void);
+__attribute__((noinline, noclone)) int32_t bench_draw(const bench_scene *s, const ew_material *material);
+__attribute__((noinline, noclone)) void bench_end(void);
 
-int32_t bench_draw(const bench_scene *s)
+static int32_t draw_mesh(const ew_vertex16 *vertices, uint32_t vertex_count, const uint16_t *indices,
+                         uint32_t index_count, uint8_t uv_fraction_bits)
 {
-    ew_transform_vertices(&geometry.transform, s->vertices, s->vertex_count, screen);
-    const ew_mesh mesh = { s->vertices, screen, NULL, s->indices, s->index_count, 4 };
+    const ew_mesh mesh = { vertices, screen, NULL, indices, index_count, uv_fraction_bits };
+    ew_transform_vertices(&geometry.transform, vertices, vertex_count, screen);
     return ew_draw_triangles(&geometry, &mesh);
+}
+
+/* As ew_scene_draw, but for the method that replaces each material's own. */
+static int32_t draw_primitive(uint32_t number, const ew_projection *projection, const ew_mat34 *node_view,
+                              const ew_material *method)
+{
+    const ew_viewport whole = { 0, 0, W, H };
+    ew_scene_primitive p;
+    ew_material material;
+    ew_texture texture;
+    ew_mat34 model_view;
+    ew_scene_get_primitive(&scene, number, &p);
+    ew_scene_get_material(&scene, p.material, &material, &texture);
+    if (material.texture) material.rung = method->rung, material.tolerance = method->tolerance;
+    int error = ew_mat34_mul(&model_view, node_view, &p.dequantise);
+    if (!error) error = ew_raster_set_material(&raster, &material);
+    if (!error) error = ew_transform_set(&geometry.transform, projection, &model_view, &whole);
+    if (error) return error;
+    return draw_mesh(p.vertices, p.vertex_count, p.indices, p.index_count, p.uv_fraction_bits);
+}
+
+static int32_t draw_baked(const ew_material *method)
+{
+    ew_scene_camera camera;
+    ew_scene_get_camera(&scene, &camera);
+    /* focal_x is focal H/W to the nearest, as in ew_scene_draw; focal <= 1024, so it fits */
+    const ew_projection projection = { (ew_q16_16)(((int64_t)camera.focal * H + W / 2) / W), camera.focal, camera.near_z };
+    int32_t error = ew_scene_pose(&scene, BENCH_TIME_MS, world);
+    for (uint32_t i = 0; i < scene.section[EW_SECTION_NODE].count && error >= 0; i++) {
+        ew_scene_node node;
+        ew_mat34 node_view;
+        ew_scene_get_node(&scene, i, &node);
+        error = ew_mat34_mul(&node_view, &camera.view, &world[i]);
+        for (uint32_t k = 0; k < node.primitive_count && error >= 0; k++) {
+            error = draw_primitive(node.first_primitive + k, &projection, &node_view, method);
+        }
+    }
+    return error;
+}
+
+int32_t bench_draw(const bench_scene *s, const ew_material *material)
+{
+    if (s->file) return draw_baked(material);
+    return draw_mesh(s->vertices, s->vertex_count, s->indices, s->index_count, 4);
 }
 void bench_end(void) { __asm__ volatile(""); }
 
-static void run(const bench_case *c)
+static uint32_t hash(void)
+{
+    uint32_t h = 2166136261u; /* FNV-1a over 16-bit units */
+    for (int i = 0; i < W * H; i++) h = (((h ^ colour[i]) * 16777619u) ^ depth[i]) * 16777619u;
+    return h;
+}
+
+static void print_hash(uint32_t h)
+{
+    char text[10] = { 0 };
+    for (int i = 0; i < 8; i++) text[i] = "0123456789abcdef"[h >> (28 - 4 * i) & 15];
+    text[8] = '\n';
+    bench_line(text);
+}
+
+/* Returns 0, or 1 when the scene cannot be drawn. */
+static int run(const bench_scene *s, const bench_method *method, uint16_t tolerance)
 {
     const ew_target target = { .colour = colour, .depth = depth, .width = W, .height = H, .stride = W };
     const ew_texture texture = { .texels = bench_texture, .width = 256, .height = 256 };
-    const ew_material material = { .texture = &texture, .tolerance = c->tolerance, .rung = c->rung };
-    const ew_projection projection = { 65536, 65536, { 1 << 29, -1 } };
-    const ew_viewport viewport = { 0, -40, 320, 320 };
-    ew_mat34 model_view;
-    for (int i = 0; i < 3; i++) {
-        ew_row_from_q16_16(&model_view.row[i], i == 0 ? 64 << 16 : 0, i == 1 ? 64 << 16 : 0, i == 2 ? 64 << 16 : 0, 0);
-    }
-    ew_raster_init(&raster, &target);
-    ew_raster_clear(&raster, 0);
-    ew_raster_set_material(&raster, &material);
+    const ew_material material = { .texture = &texture, .tolerance = tolerance, .rung = method->rung };
+    int error = ew_raster_init(&raster, &target);
+    ew_raster_clear(&raster, BACKGROUND);
+    if (!error) error = ew_raster_set_material(&raster, &material);
     ew_geometry_init(&geometry, &raster);
-    ew_transform_set(&geometry.transform, &projection, &model_view, &viewport);
-    bench_draw(c->scene);
-    bench_end();
-    for (int i = 0; i < W * H; i++) { /* FNV-1a over 16-bit units */
-        bench_hash = (bench_hash ^ colour[i]) * 16777619u;
-        bench_hash = (bench_hash ^ depth[i]) * 16777619u;
+    if (!error) error = bench_view(&geometry.transform, W);
+    if (!error && s->file) {
+        error = ew_scene_open(&scene, s->file, s->file_bytes);
+        if (!error && (scene.largest_primitive > BENCH_MOST_VERTICES ||
+                       scene.section[EW_SECTION_NODE].count > BENCH_MOST_NODES)) {
+            error = EW_ERR_RANGE;
+        }
     }
+    if (!error) error = bench_draw(s, &material) < 0;
+    bench_end();
+    if (error) bench_line("cannot draw a scene\n");
+    else print_hash(hash());
+    return error != 0;
+}
+
+static int run_all(void)
+{
+    const bench_method *method;
+    uint16_t tolerance;
+    for (int s = 0; s < bench_scene_count; s++) {
+        for (int i = 0; bench_case(i, &method, &tolerance); i++) {
+            if (run(&bench_scenes[s], method, tolerance)) return 1;
+        }
+    }
+    return 0;
 }
 
 #if __STDC_HOSTED__
+#include <stdio.h>
+#include <string.h>
+
+static int quiet;
+void bench_line(const char *text)
+{
+    if (!quiet) fputs(text, stdout);
+}
+
+#if EW_TRACE
+static long fragments;
+void ew_trace_triangle(const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *c, int rung)
+{
+    (void)a, (void)b, (void)c, (void)rung;
+}
+void ew_trace_fragment(uint16_t x, uint16_t y, uint16_t d, ew_q20_12 u, ew_q20_12 v)
+{
+    (void)x, (void)y, (void)d, (void)u, (void)v;
+    fragments++;
+}
+
+static int list(void)
+{
+    const bench_method *method;
+    uint16_t tolerance;
+    quiet = 1;
+    for (int s = 0; s < bench_scene_count; s++) {
+        for (int i = 0; bench_case(i, &method, &tolerance); i++) {
+            if (i == 0) {
+                fragments = 0;
+                if (run(&bench_scenes[s], method, tolerance)) return 1;
+            }
+            printf("%s,%s,%g,%ld\n", bench_scenes[s].name, method->name, tolerance / 16.0, fragments);
+        }
+    }
+    return 0;
+}
+#endif
+
 int main(int argc, char **argv)
 {
-    if (argc == 2 && strcmp(argv[1], "--list") == 0) {
-        for (int i = 0; i < CASES; i++) {
-            const bench_case *c = &cases[i];
-            printf("%s,%s,%g,%ld\n", c->scene->name, c->method, c->tolerance / 16.0, c->scene->fragments);
-        }
-        return 0;
-    }
-    int first = argc == 2 ? atoi(argv[1]) : 0, end = argc == 2 ? first + 1 : CASES;
-    if (first < 0 || end > CASES) return 2;
-    for (int i = first; i < end; i++) run(&cases[i]);
-    printf("%08x\n", (unsigned)bench_hash);
-    return 0;
+#if EW_TRACE
+    if (argc == 2 && strcmp(argv[1], "--list") == 0) return list();
+#endif
+    if (argc > 1) fprintf(stderr, "usage: %s\n", argv[0]);
+    return argc > 1 ? 2 : run_all();
 }
 #else
-int main(void)
-{
-    for (int i = 0; i < CASES; i++) run(&cases[i]);
-    return 0;
-}
+#include "../../examples/firmware/board/board.h"
+
+void bench_line(const char *text) { board_print(text); }
+int main(void) { return run_all(); }
 #endif

@@ -1,11 +1,16 @@
 /* A QEMU plugin that counts executed instructions between two places of a firmware.
  *
- *   -plugin count.so,begin=0xADDR,end=0xADDR,out=FILE[,profile=FILE]
+ *   -plugin count.so,begin=0xADDR,end=0xADDR,out=FILE[,edges=1]
  *
  * A region runs from the translated block that starts at BEGIN up to the one that starts
- * at END; each writes one line, its count, to FILE. The profile, over all regions, has a line
- * "0xADDR count" for each block. Conditional instructions that are
- * skipped inside an IT block count as executed, as they take their slot.
+ * at END; each writes a line "R instructions" to FILE. With edges=1 it is followed by what a
+ * cycle model needs, hexadecimal addresses of first and last instructions:
+ *
+ *   B first last executed            for each block
+ *   E first last next-first times    for each way from one block to the next
+ *
+ * Conditional instructions that are skipped inside an IT block count as executed, as they
+ * take their slot.
  *
  * Debian 12 ships no qemu-plugin.h; the declarations below are the part of QEMU's plugin
  * interface, version 1 (QEMU 4.2 to 8), that is used here.
@@ -35,37 +40,95 @@ void qemu_plugin_register_atexit_cb(qemu_plugin_id_t id, void (*cb)(qemu_plugin_
 EXPORT int qemu_plugin_version = 1;
 EXPORT int qemu_plugin_install(qemu_plugin_id_t id, const qemu_info_t *info, int argc, char **argv);
 
+struct block;
+struct edge {
+    struct block *to;
+    uint64_t times;
+    struct edge *next;
+};
 struct block {
-    uint64_t start, instructions, counted;
+    uint64_t first, last, instructions, executed;
+    struct edge *edges; /* the latest first */
     struct block *next;
 };
 
 static uint64_t begin, end, count;
-static bool counting;
-static FILE *out, *profile;
-static struct block *blocks;
+static bool counting, with_edges;
+static FILE *out;
+static struct block *blocks, *before;
+
+static void *zeroed(size_t bytes)
+{
+    void *p = calloc(1, bytes); /* lives as long as QEMU keeps the block: to the end */
+    if (!p) abort();
+    return p;
+}
+
+static void count_edge(struct block *from, struct block *to)
+{
+    struct edge **at = &from->edges;
+    while (*at && (*at)->to != to) at = &(*at)->next;
+    struct edge *e = *at;
+    if (e) {
+        *at = e->next;
+    } else {
+        e = zeroed(sizeof *e);
+        e->to = to;
+    }
+    e->next = from->edges;
+    from->edges = e;
+    e->times++;
+}
+
+static void write_region(void)
+{
+    fprintf(out, "R %" PRIu64 "\n", count);
+    for (struct block *b = blocks; b; b = b->next) {
+        if (!b->executed) continue;
+        if (with_edges) fprintf(out, "B %" PRIx64 " %" PRIx64 " %" PRIu64 "\n", b->first, b->last, b->executed);
+        b->executed = 0;
+        for (struct edge *e = b->edges; e; e = e->next) {
+            if (e->times) {
+                fprintf(out, "E %" PRIx64 " %" PRIx64 " %" PRIx64 " %" PRIu64 "\n", b->first, b->last, e->to->first,
+                        e->times);
+            }
+            e->times = 0;
+        }
+    }
+}
 
 static void executed(unsigned vcpu, void *user)
 {
     struct block *b = user;
     (void)vcpu;
-    if (b->start == begin) counting = true, count = 0;
-    if (b->start == end && counting) {
+    if (b->first == begin) counting = true, count = 0, before = NULL;
+    if (b->first == end && counting) {
         counting = false;
-        fprintf(out, "%" PRIu64 "\n", count);
+        write_region();
     }
-    if (counting) count += b->instructions, b->counted += b->instructions;
+    if (!counting) return;
+    count += b->instructions;
+    b->executed++;
+    if (with_edges && before) count_edge(before, b);
+    before = b;
 }
 
 static void translated(qemu_plugin_id_t id, struct qemu_plugin_tb *tb)
 {
     (void)id;
-    struct block *b = calloc(1, sizeof *b); /* lives as long as QEMU keeps the block: to the end */
-    if (!b) abort();
-    b->instructions = qemu_plugin_tb_n_insns(tb);
-    b->start = qemu_plugin_insn_vaddr(qemu_plugin_tb_get_insn(tb, 0));
-    b->next = blocks;
-    blocks = b;
+    uint64_t n = qemu_plugin_tb_n_insns(tb);
+    uint64_t first = qemu_plugin_insn_vaddr(qemu_plugin_tb_get_insn(tb, 0));
+    uint64_t last = qemu_plugin_insn_vaddr(qemu_plugin_tb_get_insn(tb, n - 1));
+    struct block *b = blocks;
+    while (b && !(b->first == first && b->last == last && b->instructions == n)) b = b->next;
+    if (!b) {
+        b = zeroed(sizeof *b);
+        b->first = first;
+        b->last = last;
+        b->instructions = n;
+        b->next = blocks;
+        blocks = b;
+    }
     qemu_plugin_register_vcpu_tb_exec_cb(tb, executed, 0, b);
 }
 
@@ -74,11 +137,6 @@ static void at_exit(qemu_plugin_id_t id, void *user)
     (void)id;
     (void)user;
     fclose(out);
-    if (!profile) return;
-    for (const struct block *b = blocks; b; b = b->next) {
-        if (b->counted) fprintf(profile, "0x%" PRIx64 " %" PRIu64 "\n", b->start, b->counted);
-    }
-    fclose(profile);
 }
 
 int qemu_plugin_install(qemu_plugin_id_t id, const qemu_info_t *info, int argc, char **argv)
@@ -88,7 +146,7 @@ int qemu_plugin_install(qemu_plugin_id_t id, const qemu_info_t *info, int argc, 
         if (strncmp(argv[i], "begin=", 6) == 0) begin = strtoull(argv[i] + 6, NULL, 0);
         else if (strncmp(argv[i], "end=", 4) == 0) end = strtoull(argv[i] + 4, NULL, 0);
         else if (strncmp(argv[i], "out=", 4) == 0) out = fopen(argv[i] + 4, "w");
-        else if (strncmp(argv[i], "profile=", 8) == 0) profile = fopen(argv[i] + 8, "w");
+        else if (strncmp(argv[i], "edges=", 6) == 0) with_edges = argv[i][6] == '1';
         else return -1;
     }
     if (!out || !begin || !end) return -1;

@@ -1,76 +1,182 @@
 #!/usr/bin/env python3
-"""Instructions per fragment of the standard scenes, counted: host by callgrind, Cortex-M by
-QEMU with the plugin beside this file. Clearing is not counted; transform, culling and
-set-up are.
+"""Instructions, and modelled cycles, per fragment of the scenes of a bench: host by callgrind,
+Cortex-M and RISC-V by QEMU with the plugin beside this file. Clearing is not counted;
+transform, culling and set-up are, and posing of a baked scene's nodes.
 
-usage: count.py --build DIR [--csv FILE] TARGET ...     (host, m0plus, m3, m4, m33)
+usage: count.py --build DIR [--bits B] [--csv FILE] TARGET ...   (host, m0plus, m3, m4, m33, rv32imc)
 
-Counts repeat exactly for the same compiler. They are instructions, not cycles.
+Counts repeat exactly for the same compiler. Host counts leave libc out and have no cycles.
 """
 import argparse
 import csv
+import glob
 import os
 import re
 import subprocess
 import sys
+from collections import namedtuple
 
-BOARDS = {"m0plus": "mps2-an385", "m3": "mps2-an385", "m4": "mps2-an386", "m33": "mps2-an505"}
+import model
+
+ARM = ["qemu-system-arm", "-M"]
+RISCV = ["qemu-system-riscv32", "-M", "virt", "-m", "32M", "-bios", "none"]
+EMULATORS = {"m0plus": [*ARM, "mps2-an385"], "m3": [*ARM, "mps2-an385"], "m4": [*ARM, "mps2-an386"],
+             "m33": [*ARM, "mps2-an505"], "rv32imc": RISCV}
+TARGETS = ["host", *EMULATORS]
+DEFAULT_BITS = 8
+
+# One picture: what was drawn and by which method (tolerance in px, a string), the fragments of the scene.
+Case = namedtuple("Case", "scene method tolerance fragments")
+# What was counted of it: instructions, (low, typical, high) cycles or None, the picture's hash.
+Count = namedtuple("Count", "instructions cycles picture")
 
 
-def run(command):
-    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, stdin=subprocess.DEVNULL)
+class Failed(Exception):
+    pass
+
+
+def run(command, stderr=subprocess.PIPE):
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=stderr, text=True, stdin=subprocess.DEVNULL, check=False)
     if done.returncode != 0:
-        sys.exit(f"count.py: {command[0]}: failed with status {done.returncode}: {done.stdout.strip()[-400:]}")
+        raise Failed(f"{command[0]}: failed with status {done.returncode}: {(done.stderr or done.stdout).strip()[-400:]}")
     return done.stdout
 
 
-def count_host(build, cases):
-    for i in range(len(cases)):
-        out = os.path.join(build, "callgrind.out")
-        run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", "--toggle-collect=bench_draw",
-             os.path.join(build, "bench-host"), str(i)])
-        with open(out, encoding="utf-8") as f:
-            yield int(re.search(r"^(?:summary|totals): (\d+)", f.read(), re.M).group(1))
+def tools_prefix(target):
+    return "riscv64-unknown-elf-" if target == "rv32imc" else "arm-none-eabi-"
 
 
-def count_board(build, target):
-    image = os.path.join(build, f"bench-{target}.elf")
-    names = {line.split()[2]: int(line.split()[0], 16)
-             for line in run(["arm-none-eabi-nm", image]).splitlines() if len(line.split()) == 3}
-    out = os.path.join(build, f"count-{target}.txt")
-    run(["qemu-system-arm", "-M", BOARDS[target], "-display", "none", "-monitor", "none", "-serial", "none",
-         "-semihosting-config", "enable=on,target=native", "-kernel", image, "-plugin",
-         f"{os.path.join(build, 'count.so')},begin={names['bench_draw']:#x},end={names['bench_end']:#x},out={out}"])
-    with open(out, encoding="utf-8") as f:
-        return [int(line) for line in f]
+def list_cases(build):
+    lines = run([os.path.join(build, "list"), "--list"]).split()
+    return [Case(scene, method, tolerance, int(n)) for scene, method, tolerance, n in (line.split(",") for line in lines)]
+
+
+# ---- host ----
+
+def outside_libc(path):
+    """Instructions of a callgrind file that are not libc's: cost lines by the object they stand under."""
+    total, skip, names, inside = 0, False, {}, False
+    with open(path, encoding="utf-8") as lines:
+        for line in lines:
+            named = re.match(r"ob=\((\d+)\)(?: (.*))?", line)
+            if named:
+                if named[2]:
+                    names[named[1]] = named[2]
+                inside = "libc.so" not in names[named[1]]
+            elif (called := re.match(r"cob=\((\d+)\) (.*)", line)):
+                names[called[1]] = called[2]
+            elif line.startswith("calls="):
+                skip = True  # the next line repeats what the called function costs
+            elif re.match(r"[+\-*\d]", line):
+                if not skip and inside:
+                    total += int(line.split()[1])
+                skip = False
+    return total
+
+
+def count_host(build, bits):
+    image, out = (os.path.join(build, str(bits), name) for name in ("bench-host", "callgrind"))
+    for old in glob.glob(out + ".*"):
+        os.unlink(old)
+    pictures = run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", "--toggle-collect=bench_draw",
+                    "--dump-after=bench_draw", image]).split()
+    dumps = sorted(glob.glob(out + ".*"), key=lambda name: int(name.rsplit(".", 1)[1]))
+    counts = [Count(outside_libc(dump), None, picture) for dump, picture in zip(dumps, pictures)]
+    for dump in [*dumps, out]:
+        if os.path.exists(dump):
+            os.unlink(dump)
+    return counts
+
+
+# ---- emulated cores ----
+
+def regions(path):
+    """Of each region: instructions, blocks, edges."""
+    found = []
+    with open(path, encoding="utf-8") as lines:
+        for line in lines:
+            kind, *rest = line.split()
+            if kind == "R":
+                found.append((int(rest[0]), {}, {}))
+            else:
+                key = tuple(int(a, 16) for a in rest[:-1])
+                found[-1][1 if kind == "B" else 2][key] = int(rest[-1])
+    return found
+
+
+def count_emulated(build, bits, target):
+    image, out = (os.path.join(build, str(bits), name) for name in (f"bench-{target}", f"regions-{target}"))
+    symbols = dict(reversed(line.split()[::2]) for line in run([tools_prefix(target) + "nm", image]).splitlines()
+                   if len(line.split()) == 3)
+    begin, end = (int(symbols[name], 16) for name in ("bench_draw", "bench_end"))
+    # semihosting writes to stderr
+    done = subprocess.run([*EMULATORS[target], "-display", "none", "-monitor", "none", "-serial", "none",
+                           "-semihosting-config", "enable=on,target=native", "-kernel", image, "-plugin",
+                           f"{os.path.join(build, 'count.so')},begin={begin:#x},end={end:#x},edges=1,out={out}"],
+                          stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True, check=False)
+    if done.returncode != 0:
+        raise Failed(f"{EMULATORS[target][0]}: {image}: status {done.returncode}: {done.stderr.strip()[-400:]}")
+    pictures = re.findall(r"^[0-9a-f]{8}$", done.stderr, re.M)
+    cycles = model.Model(target, tools_prefix(target) + "objdump", image)
+    counts = [Count(n, cycles.cycles(blocks, edges), picture) for (n, blocks, edges), picture in zip(regions(out), pictures)]
+    os.unlink(out)
+    return counts
+
+
+def count(build, bits, target, cases):
+    """A Count for each case."""
+    counts = count_host(build, bits) if target == "host" else count_emulated(build, bits, target)
+    if len(counts) != len(cases):
+        raise Failed(f"{target}: {len(counts)} counts for {len(cases)} cases")
+    return counts
+
+
+# ---- command line ----
+
+def print_table(cases, counts):
+    scenes = list(dict.fromkeys(case.scene for case in cases))
+    print(f"{'per fragment':28s}" + "".join(f"{scene:>16s}" for scene in scenes))
+    for target, of_target in counts.items():
+        rows = {}
+        for case, c in zip(cases, of_target):
+            text = f"{c.instructions / case.fragments:.1f}"
+            if c.cycles:
+                text += f" ({c.cycles[1] / case.fragments:.1f})"
+            rows.setdefault((case.method, case.tolerance), {})[case.scene] = text
+        several = {method for method, tolerance in rows if tolerance != "0"}
+        for (method, tolerance), row in rows.items():
+            name = f"{target} {method}" + (f" {tolerance} px" if method in several else "")
+            print(f"{name:28s}" + "".join(f"{row[scene]:>16s}" for scene in scenes))
+    print("instructions, and in brackets modelled cycles (typical)")
+
+
+def arguments(description):
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("--build", required=True, help="folder of the images")
+    parser.add_argument("--bits", type=int, default=DEFAULT_BITS, help="size of the reciprocal table, log2")
+    parser.add_argument("targets", nargs="+", choices=TARGETS)
+    return parser
 
 
 def main():
-    parser = argparse.ArgumentParser(description="Counts instructions per fragment.")
-    parser.add_argument("--build", required=True)
+    parser = arguments("Counts instructions and models cycles per fragment.")
     parser.add_argument("--csv")
-    parser.add_argument("targets", nargs="+", choices=["host", *BOARDS])
     args = parser.parse_args()
-    cases = [line.split(",") for line in run([os.path.join(args.build, "bench-host"), "--list"]).split()]
-    rows = []
-    for target in args.targets:
-        counts = list(count_host(args.build, cases) if target == "host" else count_board(args.build, target))
-        if len(counts) != len(cases):
-            sys.exit(f"count.py: {target}: {len(counts)} counts for {len(cases)} cases")
-        rows += [(target, *case, n) for case, n in zip(cases, counts)]
+    cases = list_cases(args.build)
+    counts = {target: count(args.build, args.bits, target, cases) for target in args.targets}
     if args.csv:
         with open(args.csv, "w", newline="", encoding="utf-8") as f:
             out = csv.writer(f)
-            out.writerow(["target", "scene", "method", "tolerance_px", "fragments", "instructions", "instr_per_px"])
-            out.writerows([*row, f"{row[5] / int(row[4]):.2f}"] for row in rows)
-    scenes = sorted({row[1] for row in rows})
-    print(f"{'instructions per fragment':28s}" + "".join(f"{scene:>8s}" for scene in scenes))
-    for target in args.targets:
-        for method, tolerance in dict.fromkeys((row[2], row[3]) for row in rows):
-            line = {row[1]: row[5] / int(row[4]) for row in rows if row[0] == target and row[2:4] == (method, tolerance)}
-            name = f"{target} {method}" + (f" {tolerance} px" if method == "auto" else "")
-            print(f"{name:28s}" + "".join(f"{line[scene]:8.1f}" for scene in scenes))
+            out.writerow(["target", "scene", "method", "tolerance_px", "fragments", "instructions", "cycles_low",
+                          "cycles_typical", "cycles_high"])
+            for target, of_target in counts.items():
+                for case, c in zip(cases, of_target):
+                    out.writerow([target, *case, c.instructions, *(c.cycles or ["na"] * 3)])
+    print_table(cases, counts)
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except (Failed, OSError) as e:
+        sys.exit(f"count.py: {e}")

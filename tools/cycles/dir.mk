@@ -1,34 +1,53 @@
-# Counting instructions: a bench that is host program and firmware, and what counts it.
+# Counting instructions: a bench that is host program and firmware, and what counts it. There is
+# a folder of images for each size of the reciprocal table, $(C)/4 to $(C)/9.
 C := $(B)/cycles
-CYCLES_CORE := $(filter fixed/% src/raster/% src/geometry/%,$(CORE_SRCS))
-CYCLES_DEPS := tools/cycles/bench.c tools/cycles/bench_cases.inc $(C)/scene_data.h $(CYCLES_CORE) \
+CYCLES_CORE := $(filter fixed/% src/raster/% src/geometry/% src/scene/%,$(CORE_SRCS))
+CYCLES_DEPS := tools/cycles/bench.c $(CYCLES_CORE) tools/cycles/cases.h tools/cycles/scene_data.h \
   $(wildcard include/edgewalk/*.h fixed/*.inc src/*/*.h)
-COUNT_TARGETS ?= host m0plus m3 m4
-cpu_m0plus := -mcpu=cortex-m0plus
-cpu_m3 := -mcpu=cortex-m3
-cpu_m4 := -mcpu=cortex-m4 -mfloat-abi=soft
-cpu_m33 := -mcpu=cortex-m33 -mfloat-abi=soft
-place_m33 := -Wl,--defsym=_flash=0x10000000,--defsym=_ram=0x38000000
-place = $(or $(place_$(1)),-Wl$(,)--defsym=_flash=0$(,)--defsym=_ram=0x20000000)
-, := ,
+COUNT_TARGETS ?= host m0plus m3 m4 m33 rv32imc
+COUNT_BITS := 8
+# sample scenes that are drawn beside the standard ones
+COUNT_SCENES := courtyard
+COUNT_FILES := $(COUNT_SCENES:%=$(B)/scenes/%.ewb)
 
-$(C)/scene_data.h: tools/cycles/scene_data.c host_tests/reference/scenes.c fixed/matrix.c fixed/arithmetic.c fixed/recip.c
+bench_flags := -std=gnu99 -O2 -g -Wall -Wextra
+freestanding := -ffreestanding -ffunction-sections
+# the emulated ones are those of examples/firmware/board/boards.mk
+bench_cc = $(if $(filter host,$(1)),$(CC) $(bench_flags),$(cc_$(1)) $(bench_flags) $(freestanding))
+
+$(C)/scene_data: tools/cycles/scene_data.c host_tests/reference/scenes.c fixed/matrix.c fixed/arithmetic.c fixed/recip.c
 	@mkdir -p $(@D)
-	$(CC) $(HOST_CFLAGS) -o $(C)/scene_data $^ -lm
-	$(C)/scene_data > $@
-$(C)/bench-host: $(CYCLES_DEPS)
-	$(CC) -std=c99 -O2 -g -Iinclude -I$(C) -o $@ $(filter %.c,$^)
-$(C)/bench-%.elf: $(CYCLES_DEPS) tools/cycles/port/start_m.c tools/cycles/port/m.ld
-	arm-none-eabi-gcc -std=gnu99 -O2 -g -ffreestanding -ffunction-sections -mthumb $(cpu_$*) -Iinclude -I$(C) \
-	  -o $@ $(filter %.c,$^) -T tools/cycles/port/m.ld $(call place,$*) -nostdlib -Wl,--gc-sections -Wl,--no-warn-rwx-segments -lgcc
+	$(CC) $(HOST_CFLAGS) -o $@ $^ -lm
+$(C)/scene_data.c: $(C)/scene_data $(COUNT_FILES)
+	$< $(foreach s,$(COUNT_SCENES),$(s)=$(B)/scenes/$(s).ewb) > $@
 $(C)/count.so: tools/cycles/count.c
 	@mkdir -p $(@D)
 	$(CC) -std=gnu11 -O2 -Wall -Wextra -fPIC -shared -o $@ $<
 
-count:  ## instructions per fragment, host and emulated Cortex-M (COUNT_TARGETS=)
+# $(C)/BITS/bench-TARGET; the scenes' data is compiled once for each target
+define bench_target
+$(C)/data-$(1).o: $(C)/scene_data.c tools/cycles/scene_data.h
+	@mkdir -p $$(@D); echo "CC $$@"; $$(call bench_cc,$(1)) -Iinclude -Itools/cycles -c -o $$@ $$<
+$(C)/%/bench-$(1): $(CYCLES_DEPS) $(C)/data-$(1).o $(board_$(1)) $(wildcard $(BOARD)/*.ld $(BOARD)/*.h)
+	@mkdir -p $$(@D); echo "CC $$@"
+	@$$(call bench_cc,$(1)) -DEW_RECIP_BITS=$$* -Iinclude -o $$@ $$(filter %.c %.S %.o,$$^) $$(link_$(1))
+endef
+$(foreach t,host m0plus m3 m4 m33 rv32imc,$(eval $(call bench_target,$(t))))
+$(C)/list: $(CYCLES_DEPS) $(C)/data-host.o
+	@echo "CC $@"
+	@$(call bench_cc,host) -DEW_TRACE=1 -Iinclude -o $@ $(filter %.c %.o,$^)
+bench_images = $(C)/list $(C)/count.so $(foreach b,$(1),$(foreach t,$(COUNT_TARGETS),$(C)/$(b)/bench-$(t)))
+
+COUNT := PYTHONDONTWRITEBYTECODE=1 $(PYTHON) tools/cycles/
+count:  ## instructions and modelled cycles per fragment, host and emulated cores (COUNT_TARGETS=)
+check-counts:  ## fail where a count has grown by more than 1 % since tools/cycles/baseline.csv
+update-counts:  ## write today's counts into tools/cycles/baseline.csv
+count check-counts update-counts:
 	@SETUP=$(SETUP) tools/setup/setup.sh count
-	@$(MAKE) --no-print-directory count-run
-count-run: $(C)/bench-host $(C)/count.so $(patsubst %,$(C)/bench-%.elf,$(filter-out host,$(COUNT_TARGETS)))
+	@$(MAKE) --no-print-directory -j2 $@-run
+count-run: $(call bench_images,$(COUNT_BITS))
 	@mkdir -p build/report
-	$(PYTHON) tools/cycles/count.py --build $(C) --csv build/report/counts.csv $(COUNT_TARGETS)
-.PHONY: count count-run
+	@$(COUNT)count.py --build $(C) --bits $(COUNT_BITS) --csv build/report/counts.csv $(COUNT_TARGETS)
+check-counts-run update-counts-run: $(call bench_images,$(COUNT_BITS))
+	@$(COUNT)baseline.py $(firstword $(subst -, ,$@)) --build $(C) --bits $(COUNT_BITS) --baseline tools/cycles/baseline.csv $(COUNT_TARGETS)
+.PHONY: count check-counts update-counts count-run check-counts-run update-counts-run

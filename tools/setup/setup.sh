@@ -1,16 +1,18 @@
 #!/bin/sh
 # setup.sh GOAL: installs the distribution's packages that `make GOAL` needs and that are
-# missing. GOAL: demo, test, lab, count, lint or cross (the compilers that tests try when they are
-# there). With SETUP=0 it only lists what is missing and exits with 2. Beside it only
-# the lab's `vmlab.sh prepare` uses the network.
+# missing. GOAL: demo, test, lab, count, report, firmware, lint or cross (the compilers that tests
+# try when they are there). With SETUP=0 it only lists what is missing and exits with 2. Beside
+# it only the lab's `vmlab.sh prepare` uses the network.
 set -eu
 
 # What each goal needs, by the names of Debian 12.
 demo="gcc g++ libc6-dev pkg-config python3 libtinygltf-dev libhidapi-dev libgpiod-dev libpng-dev"
 test="$demo libcmocka-dev assimp-testmodels libosmesa6-dev"
-count="gcc libc6-dev python3 valgrind gcc-arm-none-eabi qemu-system-arm"
+count="$demo valgrind gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm qemu-system-misc"
+report="$count gnuplot-nox fonts-dejavu-core"
 cross="gcc-arm-none-eabi gcc-riscv64-unknown-elf gcc-avr"
 lint="gcc libc6-dev cppcheck clang-tidy libcmocka-dev libosmesa6-dev"
+firmware="$demo clang $cross avr-libc qemu-system-arm qemu-system-misc simavr"
 lab="$demo libusb-1.0-0-dev gpiod qemu-system-x86 busybox-static cpio kmod xz-utils"
 
 goal=${1:-}
@@ -19,10 +21,12 @@ demo) wanted=$demo ;;
 test) wanted=$test ;;
 lab) wanted=$lab goal=lab-test ;;
 count) wanted=$count ;;
+report) wanted=$report ;;
+firmware) wanted=$firmware ;;
 cross) wanted=$cross ;;
 lint) wanted=$lint ;;
 *)
-    echo "usage: setup.sh demo|test|lab|count|cross|lint   (SETUP=0: only list what is missing)" >&2
+    echo "usage: setup.sh demo|test|lab|count|report|firmware|cross|lint   (SETUP=0: only list what is missing)" >&2
     exit 2
     ;;
 esac

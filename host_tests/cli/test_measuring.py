@@ -1,0 +1,156 @@
+"""The measuring room's own arithmetic: cycle models against the manuals' examples and hand-counted
+loops, the baseline's verdicts, the automatic choice against the cheapest."""
+import contextlib
+import io
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "tools" / "cycles"), str(ROOT / "tools" / "report")]
+
+import atlas  # noqa: E402
+import baseline  # noqa: E402
+import charts  # noqa: E402
+import count  # noqa: E402
+import model  # noqa: E402
+import tables  # noqa: E402
+
+
+class Assembled(unittest.TestCase):
+    """Programs of a few lines, assembled for real, with executed blocks given by hand."""
+
+    def assemble(self, target, source):
+        prefix = count.tools_prefix(target)
+        if not shutil.which(prefix + "as"):
+            self.skipTest(f"{prefix}as is not installed")
+        options = {"m0plus": ["-mcpu=cortex-m0plus", "-mthumb"], "m3": ["-mcpu=cortex-m3", "-mthumb"],
+                   "m4": ["-mcpu=cortex-m4", "-mthumb"], "rv32imc": ["-march=rv32imc"]}[target]
+        head = "" if target == "rv32imc" else ".syntax unified\n.thumb\n"
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "a.o")
+            subprocess.run([prefix + "as", *options, "-o", path, "-"], input=f"{head}.text\n{source}\n", text=True, check=True)
+            made = model.Model(target, prefix + "objdump", path)
+        made.at = sorted(made.code)
+        return made
+
+    def straight(self, target, source):
+        """Cycles of a block, without its last instruction, a nop."""
+        made = self.assemble(target, source + "\nnop\n")
+        return made.block(made.at[0], made.at[-1])
+
+    def loop(self, target, source, last_before, rounds):
+        """Instructions up to `last_before` once, the rest to the branch `rounds` times, and a return."""
+        made = self.assemble(target, source)
+        first, start, branch, end = made.at[0], made.at[last_before + 1], made.at[-2], made.at[-1]
+        blocks = {(first, branch): 1, (start, branch): rounds - 1, (end, end): 1}
+        edges = {(first, branch, start): 1, (start, branch, start): rounds - 2, (start, branch, end): 1}
+        return made.cycles(blocks, edges)
+
+    def test_the_manuals_own_examples(self):
+        # Arm DDI 0337I, load/store timings: so many cycles in total
+        for source, cycles in (("ldr r0, [r1]\nldr r1, [r2]", 3), ("ldr r0, [r1, r2]\nstr r0, [r3, #20]", 3),
+                               ("ldr r0, [r1, r2]\nstr r1, [r3, r2]", 3), ("ldr r0, [r1, r5]\nldr r1, [r2]\nldr r2, [r3, #4]", 4),
+                               ("str r0, [r1, #4]", 1)):
+            for target in ("m3", "m4"):
+                self.assertEqual(self.straight(target, source)[1], cycles, f"{target}: {source}")
+
+    def test_an_address_just_computed_waits(self):
+        self.assertEqual(self.straight("m3", "adds r1, r1, #4\nldr r0, [r1]"), (3, 4, 4))
+        self.assertEqual(self.straight("m3", "adds r2, r1, #4\nldr r0, [r1]"), (3, 3, 3))
+        self.assertEqual(self.straight("m3", "ldr r1, [r2]\nldr r0, [r1]"), (4, 4, 4))
+
+    def test_hand_counted_delay_loop(self):
+        source = "movs r0, #100\n1: subs r0, #1\nbne 1b\nbx lr"
+        self.assertEqual(self.loop("m0plus", source, 0, 100), (302,) * 3)  # 1 + 100 + 99 2 + 1 + 2
+        self.assertEqual(self.loop("m3", source, 0, 100), (1 + 100 + 99 * 2 + 1 + 2, 402, 1 + 100 + 99 * 4 + 1 + 4))
+        source = "li a0, 100\n1: addi a0, a0, -1\nbnez a0, 1b\nret"
+        self.assertEqual(self.loop("rv32imc", source, 0, 100), (302, 401, 401))  # 1 + 100 + 99 3 + 1 + 2
+
+    def test_kinds_of_instructions(self):
+        expected = {"push {r4-r7, lr}": (6, 6), "pop {r4-r7, pc}": (8, 8), "muls r0, r1, r0": (1, 1), "ldrh r0, [r1, r2]": (2, 2),
+                    "cmp r0, r1": (1, 1), "stmia r0!, {r1, r2}": (3, 3)}
+        for source, (m0, m3) in expected.items():
+            self.assertEqual(self.straight("m0plus", source)[1], m0, source)
+            self.assertEqual(self.straight("m3", source)[1], m3, source)
+        for source, m3, m4 in (("smull r0, r1, r2, r3", (3, 4, 5), (1, 1, 1)), ("mla r0, r1, r2, r3", (2, 2, 2), (1, 1, 1)),
+                               ("smlal r0, r1, r2, r3", (4, 6, 7), (1, 1, 1)), ("udiv r0, r1, r2", (2, 7, 12), (2, 7, 12))):
+            self.assertEqual(self.straight("m3", source), m3, source)
+            self.assertEqual(self.straight("m4", source), m4, source)
+        for source, cycles in (("mul a0, a1, a2", (1, 3, 33)), ("mulhu a0, a1, a2", (2, 4, 33)), ("lw a0, 0(a1)", (2, 2, 2)),
+                               ("divu a0, a1, a2", (38, 38, 38)), ("srli a0, a0, 3", (1, 1, 1))):
+            self.assertEqual(self.straight("rv32imc", source), cycles, source)
+
+
+class Callgrind(unittest.TestCase):
+    def test_libc_and_repeated_costs_are_left_out(self):
+        text = ("events: Ir\nob=(1) /x/bench-host\nfn=(1) draw\n10 100\n+1 20\ncob=(2) /lib/libc.so.6\ncfn=(2) memset\ncalls=3 0\n"
+                "12 900\n13 5\nob=(2)\nfn=(2)\n0 900\nob=(1)\nfn=(3) end\n* 1\ntotals: 1026\n")
+        with tempfile.NamedTemporaryFile("w", suffix=".out") as f:
+            f.write(text)
+            f.flush()
+            self.assertEqual(count.outside_libc(f.name), 126)
+
+
+class Baseline(unittest.TestCase):
+    def compare(self, now, made_with):
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()) as said:
+            path = os.path.join(folder, "baseline.csv")
+            baseline.write(path, 8, {"m3": "gcc 1"}, {("m3", "A", "auto", "0.25"): 1000, ("m3", "B", "auto", "0.25"): 500})
+            return baseline.compare(path, {"m3": made_with}, now), said.getvalue()
+
+    def test_growth_fails_and_is_named(self):
+        failures, said = self.compare({("m3", "A", "auto", "0.25"): 1011, ("m3", "B", "auto", "0.25"): 505}, "gcc 1")
+        self.assertEqual(failures, 1)
+        self.assertIn("FAIL: m3 A auto 0.25: 1000 instructions, now 1011 (+1.10 %)", said)
+        self.assertIn("changed: m3 B", said)
+
+    def test_another_compiler_only_warns(self):
+        failures, said = self.compare({("m3", "A", "auto", "0.25"): 2000, ("m3", "C", "auto", "0.25"): 1}, "gcc 2")
+        self.assertEqual(failures, 0)
+        for word in ("warning: m3: made with 'gcc 2'", "warning: m3 A", "new: m3 C", "gone: m3 B"):
+            self.assertIn(word, said)
+
+
+class Tables(unittest.TestCase):
+    @staticmethod
+    def row(method, tolerance, instr, displacement, bound):
+        return {"target": "m3", "scene": "A", "method": method, "tolerance_px": tolerance, "recip_bits": 8,
+                "instr_per_px": str(instr), "cycles_per_px": "na", "disp_max_px": str(displacement), "bound_px": bound}
+
+    def test_auto_against_the_cheapest(self):
+        rungs = [self.row("exact", "na", 100, 0, 0), self.row("affine", "na", 10, 0.2, 3.0), self.row("runs", "0.25", 50, 0.25, 0.25)]
+        for instr, state, by_bound, measured in ((52, "over", "0.0400", "4.2000"), (10, "ok", "-0.8000", "0.0000")):
+            auto, = tables.auto_rows([*rungs, self.row("auto", "0.25", instr, 0.1, 0.25)])
+            self.assertEqual((auto["state"], auto["over_by_bound"], auto["over_measured"]), (state, by_bound, measured))
+            self.assertEqual((auto["cheapest_by_bound"], auto["cheapest_measured"]), ("runs 0.25", "affine"))
+        dearer, = tables.auto_rows([rungs[0], self.row("auto", "0", 106, 0, 0)])
+        self.assertEqual(dearer["state"], "over")
+
+    def test_no_cell_is_empty(self):
+        with tempfile.TemporaryDirectory() as folder, self.assertRaises(tables.Failed):
+            tables.write(os.path.join(folder, "t.csv"), ["a", "notes"], [{"a": "", "notes": ""}])
+
+    def test_frontier(self):
+        self.assertEqual(charts.frontier([(1, 5), (2, 6), (3, 4), (2, 5)]), [(1, 5), (3, 5), (3, 4)])
+
+
+class Atlas(unittest.TestCase):
+    @staticmethod
+    def walk(states, predicted):
+        return [{"axis": "a", "method": "m", "x": str(2 ** i), "predicted_limit": predicted, "state": s} for i, s in enumerate(states)]
+
+    def test_limits(self):
+        for states, predicted, measured, verdict in (
+                (["ok", "ok", "ok", "degraded"], "5", 4, "agrees"), (["ok", "degraded", "ok"], "4", 1, "DISAGREES"),
+                (["degraded", "degraded", "ok"], "4", 4, "agrees"), (["ok", "ok"], "4", None, "never reached"),
+                (["refused"], "4", None, "never ok"), (["ok", "refused"], "na", 1, "")):
+            self.assertEqual(atlas.limits(self.walk(states, predicted)), [["a", "m", predicted, measured, verdict]], states)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,42 @@
+/* What is computed on every machine and must come out the same: one hash per case. */
+#ifndef SAME_BITS_H
+#define SAME_BITS_H
+
+#include <stdint.h>
+
+/* What a target has room for:
+ *   0  fixed-point functions and the set of triangles (AVR: 8 KB of RAM, 16-bit int)
+ *   1  and the standard scenes A, C, D and E at 64x48 (16 KB)
+ *   2  and scene B, whose vertices take 17 KB (64 KB)
+ *   3  and all five at 320x240 (more than 330 KB) */
+#ifndef SAME_BITS_ROOM
+#define SAME_BITS_ROOM 3
+#endif
+
+/* The one picture's memory. */
+#if SAME_BITS_ROOM >= 3
+#define SAME_BITS_PIXELS (320 * 240)
+#elif SAME_BITS_ROOM >= 1
+#define SAME_BITS_PIXELS (64 * 48)
+#else
+#define SAME_BITS_PIXELS (64 * 12)
+#endif
+extern uint16_t same_colour[SAME_BITS_PIXELS], same_depth[SAME_BITS_PIXELS];
+
+/* Prints `hash SCENE METHOD TOLERANCE SIZE HASH`: the tolerance in 1/16 px, `-` for what does
+ * not apply. */
+void print_hash(const char *scene, const char *method, int tolerance, const char *size, uint32_t hash);
+void print_failure(const char *scene, const char *what);
+
+void fixed_bits(void);
+void triangle_bits(void);
+void scene_bits(void);
+
+/* Pseudo-random numbers, the same everywhere. */
+typedef struct generator {
+    uint32_t state; /* not 0 */
+} generator;
+uint32_t random32(generator *g);
+int32_t random_between(generator *g, int32_t low, int32_t high); /* both included; high - low < 2^31 */
+
+#endif

@@ -1,0 +1,60 @@
+/* What is counted and measured: methods, tolerances, the frames of baked scenes. A new rung
+ * is one line of bench_methods. */
+#ifndef EW_CYCLES_CASES_H
+#define EW_CYCLES_CASES_H
+
+#include "edgewalk/raster.h"
+
+/* By which formula of docs/error-bound.md a method's displacement is known beforehand. */
+typedef enum bench_bound {
+    BOUND_AFFINE,    /* max L |dw| / (3 w_min)                                              */
+    BOUND_RUN,       /* run^2 |dw| / (4 w)                                                  */
+    BOUND_TABLE,     /* the table reciprocal's error of the way in texels, against e        */
+    BOUND_EXACT,     /* none but e                                                          */
+    BOUND_TOLERANCE  /* the material's tolerance                                            */
+} bench_bound;
+
+typedef struct bench_method {
+    const char *name;
+    uint8_t rung;
+    uint8_t takes_tolerance; /* drawn once for each tolerance, or once                      */
+    bench_bound bound;
+    uint16_t run;            /* pixels, for BOUND_RUN                                       */
+} bench_method;
+
+static const bench_method bench_methods[] = {
+    { "affine", EW_RUNG_AFFINE, 0, BOUND_AFFINE, 0 },
+    { "runs8", EW_RUNG_RUNS_8, 0, BOUND_RUN, 8 },
+    { "runs16", EW_RUNG_RUNS_16, 0, BOUND_RUN, 16 },
+    { "runs32", EW_RUNG_RUNS_32, 0, BOUND_RUN, 32 },
+    { "table", EW_RUNG_TABLE, 0, BOUND_TABLE, 0 },
+    { "exact", EW_RUNG_EXACT, 0, BOUND_EXACT, 0 },
+    { "runs", EW_RUNG_RUNS, 1, BOUND_TOLERANCE, 0 },
+    { "auto", EW_RUNG_AUTO, 1, BOUND_TOLERANCE, 0 },
+};
+enum { BENCH_METHODS = sizeof bench_methods / sizeof *bench_methods };
+
+/* 1/16 px */
+static const uint16_t bench_tolerances[] = { 0, 1, 2, 4, 8, 16, 32 };
+enum { BENCH_TOLERANCES = sizeof bench_tolerances / sizeof *bench_tolerances };
+
+/* Of baked scenes, whose camera is used as it is. */
+enum { BENCH_WIDTH = 320, BENCH_HEIGHT = 240, BENCH_TIME_MS = 1000 };
+
+/* One picture to count or to judge: `number` runs over methods and their tolerances. Returns
+ * 0 behind the last. */
+static inline int bench_case(int number, const bench_method **method, uint16_t *tolerance)
+{
+    for (int i = 0; i < BENCH_METHODS; i++) {
+        int cases = bench_methods[i].takes_tolerance ? BENCH_TOLERANCES : 1;
+        if (number < cases) {
+            *method = &bench_methods[i];
+            *tolerance = bench_methods[i].takes_tolerance ? bench_tolerances[number] : 0;
+            return 1;
+        }
+        number -= cases;
+    }
+    return 0;
+}
+
+#endif

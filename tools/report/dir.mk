@@ -1,0 +1,36 @@
+# The report: every method counted on every target and judged by the referee, as tables, charts and
+# a page.
+REPORT_BITS ?= 4 5 6 7 8 9
+REPORT := build/report
+JUDGE_SRCS := tools/report/judge.c $(addprefix host_tests/,accuracy/measure.c accuracy/scene_measure.c \
+  reference/referee.c reference/scenes.c) $(addprefix tools/common/,image.c player.c whole_file.c)
+$(C)/%/judge: $(JUDGE_SRCS) $(CORE_SRCS) tools/cycles/cases.h \
+  $(wildcard include/edgewalk/*.h host_tests/*/*.h tools/common/*.h fixed/*.inc src/*/*.h)
+	@mkdir -p $(@D); echo "CC $@"
+	@$(CC) $(HOST_CFLAGS) -DEW_TRACE=1 -DEW_RECIP_BITS=$* -o $@ $(filter %.c,$^) -lpng -lz -lm
+
+report:  ## speed against accuracy: tables, charts and a page in build/report (REPORT_BITS=, COUNT_TARGETS=)
+	@SETUP=$(SETUP) tools/setup/setup.sh report
+	@$(MAKE) --no-print-directory -j2 report-run
+.PHONY: report report-run
+
+# The walks run under the sanitizers: no axis may end in a write outside or undefined behaviour.
+STABILITY_SRCS := tools/report/stability.c $(filter-out tools/% host_tests/accuracy/scene_measure.c,$(JUDGE_SRCS)) \
+  $(filter-out src/scene/% src/display/%,$(CORE_SRCS))
+$(C)/%/stability: $(STABILITY_SRCS) tools/cycles/cases.h $(wildcard include/edgewalk/*.h host_tests/*/*.h fixed/*.inc src/*/*.h)
+	@mkdir -p $(@D); echo "CC $@"
+	@$(CC) $(HOST_CFLAGS) -g -fsanitize=address,undefined -fno-sanitize-recover=all -include assert.h '-DEW_ASSERT=assert' \
+	  -DEW_TRACE=1 -DEW_RECIP_BITS=$* -o $@ $(filter %.c,$^) -lm
+STABILITY := $(foreach b,$(COUNT_BITS) $(filter-out $(COUNT_BITS),$(REPORT_BITS)),$(C)/$(b)/stability)
+stability:  ## the axes along which methods fail, walked until they do: build/report/stability.csv
+	@SETUP=$(SETUP) tools/setup/setup.sh report
+	@$(MAKE) --no-print-directory -j2 stability-run
+ATLAS = mkdir -p $(REPORT) && PYTHONDONTWRITEBYTECODE=1 $(PYTHON) tools/report/atlas.py --out $(REPORT) $(STABILITY)
+stability-run: $(STABILITY)
+	@$(ATLAS)
+# The report shows limits that disagree, and does not stop at them.
+report-run: $(call bench_images,$(REPORT_BITS)) $(foreach b,$(REPORT_BITS),$(C)/$(b)/judge) $(STABILITY)
+	@$(ATLAS) >$(C)/stability.log || [ $$? = 1 ] || { cat $(C)/stability.log; exit 2; }
+	@PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=tools/cycles $(PYTHON) tools/report/report.py --build $(C) --out $(REPORT) \
+	  --bits "$(REPORT_BITS)" --scenes "$(foreach s,$(COUNT_SCENES),$(s)=$(B)/scenes/$(s).ewb)" $(COUNT_TARGETS)
+.PHONY: stability stability-run

@@ -1,0 +1,247 @@
+"""The report's page: one HTML file beside its charts and pictures, no script."""
+import html
+import os
+
+import atlas
+import charts
+import model
+import tables
+
+SHOWN_TOLERANCE = "0.25"
+PICTURES = [("reference", "what the referee draws in double precision"), ("ours", "what the library draws"),
+            ("difference", "the difference, channel by channel: black is equal"),
+            ("displacement", "displacement in pixels: 0 to 1/4"), ("texels", "error of u or v in texels: 0 to 1")]
+SCENES = {
+    "A": "A floor that recedes to the horizon: 1/z is constant along every scanline.",
+    "B": "A sphere of 1,984 small triangles.",
+    "C": "A floor that crosses the near plane and the sides of the screen.",
+    "D": "The floor of A rolled by 60 degrees: 1/z changes along the scanline, the hardest case for runs.",
+    "E": "A floor of 80 by 65 units that crosses the near plane.",
+    "courtyard": "The sample scene, baked from glTF; its frame at 1 s.",
+}
+TARGETS = {
+    "host": "the host's own processor", "m0plus": "Cortex-M0+", "m3": "Cortex-M3", "m4": "Cortex-M4, no floating point used",
+    "m33": "Cortex-M33, no floating point used", "rv32imc": "RV32IMC",
+}
+STYLE = """
+:root { --ink: #1c2430; --soft: #5b6775; --line: #d9dee5; --accent: #c8102e; }
+* { box-sizing: border-box; }
+body { margin: 0 auto; max-width: 1400px; padding: 0 16px 64px; color: var(--ink); background: #fff;
+       font: 16px/1.55 system-ui, "Segoe UI", "DejaVu Sans", sans-serif; }
+h1 { font-size: 1.9rem; line-height: 1.2; margin: 32px 0 8px; } h2 { margin: 48px 0 8px; } h3 { margin: 28px 0 4px; }
+p, li { max-width: 75ch; } .soft, figcaption { color: var(--soft); font-size: 0.9rem; } code { font-size: 0.9em; }
+nav a { margin-right: 14px; white-space: nowrap; }
+.grid { display: grid; gap: 12px; grid-template-columns: repeat(auto-fill, minmax(min(100%, 400px), 1fr)); }
+.pictures { grid-template-columns: repeat(auto-fill, minmax(min(100%, 240px), 1fr)); }
+figure { margin: 0; } img { width: 100%; height: auto; display: block; border: 1px solid var(--line); background: #fff; }
+.pictures img { image-rendering: pixelated; }
+.table { overflow-x: auto; margin: 8px 0 16px; } table { border-collapse: collapse; font-size: 0.9rem; }
+th, td { padding: 3px 10px; border-bottom: 1px solid var(--line); text-align: right; white-space: nowrap; }
+th:first-child, td:first-child { text-align: left; } thead th { border-bottom: 2px solid var(--ink); }
+.over { color: var(--accent); font-weight: 600; } details { margin: 8px 0; } summary { cursor: pointer; color: #1b5e9c; }
+.scale { height: 14px; max-width: 480px; border: 1px solid var(--line);
+         background: linear-gradient(90deg, #0d0d4d, #0073b3 25%, #33bf4d 50%, #ffd91a 75%, #d91a1a); }
+.scale-ends { display: flex; justify-content: space-between; max-width: 480px; }
+pre { overflow-x: auto; background: #f4f6f8; padding: 10px; }
+"""
+
+
+def table(head, rows):
+    def cells(row, tag):
+        return "".join(c if c.startswith("<td") else f"<{tag}>{c}</{tag}>" for c in row)
+    body = "\n".join(f"<tr>{cells(row, 'td')}</tr>" for row in rows)
+    return f'<div class="table"><table><thead><tr>{cells(head, "th")}</tr></thead>\n<tbody>{body}</tbody></table></div>\n'
+
+
+def short(value, digits=3):
+    number = tables.number(value)
+    return value if number != number else "0" if number == 0 else f"{number:.{digits}g}"
+
+
+def first_auto(rows):
+    """The rows of the automatic choice, of its first profile."""
+    names = [row["method"] for row in rows if tables.is_auto(row)]
+    return [row for row in rows if names and row["method"] == names[0]]
+
+
+def summary(rows, bits):
+    own = [row for row in first_auto(rows) if row["recip_bits"] == bits and row["tolerance_px"] == SHOWN_TOLERANCE]
+    scenes = list(dict.fromkeys(row["scene"] for row in own))
+    lines = []
+    for target in dict.fromkeys(row["target"] for row in own):
+        of = {row["scene"]: row for row in own if row["target"] == target}
+        lines.append([target] + [f"{float(of[s]['instr_per_px']):.1f}" + (
+            "" if of[s]["cycles_per_px"] == "na" else f" <span class='soft'>({float(of[s]['cycles_per_px']):.1f})</span>") for s in scenes])
+    return table(["target", *scenes], lines)
+
+
+def accuracy(rows, bits):
+    target = rows[0]["target"]
+    own = [row for row in rows if row["target"] == target and row["recip_bits"] == bits and
+           (row["tolerance_px"] in ("na", SHOWN_TOLERANCE))]
+    head = ["scene, method", "wrong pixels", "hit twice", "worst displacement px", "rms px", "needed e only",
+            "u rms texels", "v rms texels", "worst depth units"]
+    return table(head, [[f"{row['scene']}, {tables.label(row)}", row["wrong_px"], row["double_hits"], short(row["disp_max_px"]),
+                         short(row["disp_rms_px"]), f"{100 * row['within_e']:.1f} %", short(row["u_rms"]), short(row["v_rms"]),
+                         short(row["depth_max_lsb"])] for row in own])
+
+
+def auto_tables(auto, bits):
+    counted = {}
+    for row in auto:
+        states = counted.setdefault((row["target"], row["metric"]), [0, 0, 0])
+        states[2 if row["cheapest_by_bound"] == "na" else row["state"] == "over"] += 1
+    text = table(["target, counted by", "as cheap", "dearer", "nothing promised (table under 6 bits)"],
+                 [[f"{target}, {metric}", str(ok), f"<td class='over'>{over}</td>" if over else "0", str(none)]
+                  for (target, metric), (ok, over, none) in counted.items()])
+    over = [row for row in auto if row["state"] == "over" and row["recip_bits"] == bits]
+    lines = [[f"{row['target']}, {row['scene']}, {row['method']} {row['tolerance_px']}, {row['metric']}", f"{float(row['auto_per_px']):.1f}",
+              row["cheapest_by_bound"], short(row["by_bound_per_px"], 4), percent(row["over_by_bound"]), row["cheapest_measured"],
+              short(row["measured_per_px"], 4), percent(row["over_measured"])] for row in over]
+    head = ["target, scene, tolerance, counted by", "auto", "cheapest by its bound", "costs", "auto dearer by", "cheapest that measures so",
+            "costs", "auto dearer by"]
+    return text + f"<details><summary>The {len(over)} dearer ones at {bits} bits</summary>{table(head, lines)}</details>"
+
+
+def percent(text):
+    return text if text == "na" else f"{100 * float(text):.1f} %"
+
+
+def image(name, alt, lazy=True):
+    return f'<img src="{name}" alt="{html.escape(alt)}"' + (' loading="lazy"' if lazy else "") + ">"
+
+
+def panels(scene, names, speed, error):
+    figures = "".join(
+        f"<figure><a href='charts/{name}.svg'>{image(f'charts/{name}.svg', f'{speed} against {error}, scene {scene}, {target}')}</a>"
+        f"<figcaption><a href='charts/{name}.png'>PNG</a></figcaption></figure>" for target, name in names.get((scene, speed, error), []))
+    return f'<div class="grid">{figures}</div>'
+
+
+def scene_section(scene, names, differing):
+    pictures = "".join(f"<figure>{image(f'pictures/{scene}-{kind}.png', f'scene {scene}: {kind}')}<figcaption>{text}</figcaption></figure>"
+                       for kind, text in PICTURES)
+    off, pixels = differing[scene]
+    parts = [f"<h3 id='scene-{scene}'>Scene {scene}</h3><p>{SCENES.get(scene, 'A sample scene.')} Automatic choice with a tolerance of "
+             f"1/4 pixel: {off:,} of {pixels:,} pixels show another texel than the exact one.</p><div class='grid pictures'>{pictures}</div>",
+             "<h4>Instructions against the worst displacement</h4>", panels(scene, names, "instr", "worst")]
+    for speed, (_, speed_text) in charts.SPEEDS.items():
+        for error, (_, error_text) in charts.ERRORS.items():
+            if (speed, error) != ("instr", "worst"):
+                parts.append(f"<details><summary>{speed_text} against {error_text}</summary>{panels(scene, names, speed, error)}</details>")
+    return "\n".join(parts)
+
+
+AXES = {
+    "depth_ratio_less_1": "farthest over nearest z along 240 pixels, less 1",
+    "far_horizon_near_over_z": "near/z of a wall: how far away it is",
+    "sliver_height_px": "height of slivers across the screen", "tiny_triangle_side_px": "side of the cells of a net of triangles",
+    "span_px": "length of a span along which 1/z falls to 60 %", "uv_range_texels": "texels from corner to corner",
+    "guard_half_width_px": "half the width of a triangle that stands over the screen",
+    "near_plane_z_over_near": "z of a floor's near corners over the near distance: at the eye and behind it too",
+}
+
+
+def stability(out):
+    """The section on where methods fail, of stability.csv."""
+    rows = atlas.read(os.path.join(out, "stability.csv"))
+    lines = [[f"{axis}, {method}", f"{float(predicted):g}", "-" if measured is None else f"{measured:g}",
+              verdict if verdict != "DISAGREES" else "<td class='over'>disagrees</td>"]
+             for axis, method, predicted, measured, verdict in atlas.limits(rows) if verdict]
+    figures = "".join(f"<figure><a href='charts/stability-{axis}.svg'>{image(f'charts/stability-{axis}.svg', axis)}</a><figcaption>"
+                      f"{AXES.get(axis, '')} <a href='charts/stability-{axis}.png'>PNG</a></figcaption></figure>"
+                      for axis in dict.fromkeys(row["axis"] for row in rows))
+    states = [row["state"] for row in rows]
+    return f"""<p>Each axis is walked from safe to broken, under the address and undefined behaviour sanitizers and with a margin around
+the picture that must stay as it is. {len(rows):,} steps: {states.count("ok"):,} ok, {states.count("degraded"):,} degraded (the error grew
+beyond the promise, or beyond 1/4 pixel for the affine method and fixed runs), {states.count("refused"):,} refused with an error code. Filled marks are ok,
+circles degraded, crosses refused; a dashed line is where a formula predicts the limit. <a href="stability.csv">stability.csv</a></p>
+<p>Predicted limits beside measured ones; they agree within a factor of {atlas.FACTOR:g}:</p>
+{table(["axis, method", "predicted", "measured", ""], lines)}
+<div class="grid">{figures}</div>"""
+
+
+HOW = """
+<p>A <b>fragment</b> is a pixel of a triangle that is drawn, before the depth test. Clearing is not counted; transform, culling,
+clipping and triangle set-up are, and in the sample scene the posing of its nodes.</p>
+<ul>
+<li><b>Instructions</b> are executed ones, counted, not timed: on the host by callgrind (libc left out), on Cortex-M and RISC-V by
+a QEMU plugin that sees every block of instructions the emulated processor runs. Two runs give the same figures.</li>
+<li><b>Cycles</b> are modelled: the same blocks, priced by published instruction timings with memory that answers at once. Flash wait
+states, caches and DMA are not in them. <code>cycles.csv</code> has a low, a typical and a high figure for each; charts show the typical one.</li>
+<li><b>Displacement</b> says how far from its pixel's centre, in pixels, the drawn texture coordinates belong: the distance to the line
+on the screen where the exact attribute has the drawn value, u and v judged apart and the farther taken. Up to e = 1/64 texel is the
+share of number formats and is removed first; pixels that need no more have displacement 0. No pixel is left out.</li>
+<li>Coordinates come back modulo the texture's size, so an error of more than half a texture is seen as a smaller one: the affine
+method's figures on the floors are too good.</li>
+<li>The <b>referee</b> works in double precision from the written conventions and shares no code with the library. Accuracy is measured
+once, on the host: each target's pictures carry the same hash over colour and depth as those that were judged, checked for every row.</li>
+<li>Charts have logarithmic axes; what is below the axis stands at its left end. Methods without a tolerance are joined over the
+sizes of the reciprocal table (4 to 9 bits), the others over tolerances 0 to 2 pixels at the default table.</li>
+<li><b>Prototype</b> marks are this project's first throw-away version; <b>peers</b> are other rasterizers, built with the same
+compilers and counted on the same scenes in 2026-11 (their floating point: hardware on m4). Both stand in
+<code>tools/report/references.csv</code>.</li>
+</ul>"""
+
+
+def sources():
+    return "<ul>" + "".join(f"<li><b>{target}</b>: {html.escape(text)}</li>" for target, text in model.SOURCES.items()) + "</ul>"
+
+
+def check_images(out, text):
+    for part in text.split('src="')[1:]:
+        path = os.path.join(out, part.split('"', 1)[0])
+        if not os.path.exists(path) or os.path.getsize(path) == 0:
+            raise tables.Failed(f"{path}: the page shows it, and it is not there")
+
+
+def write(out, rows, auto, names, differing, bits, versions):
+    scenes = list(dict.fromkeys(row["scene"] for row in rows))
+    text = f"""<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
+<title>edgewalk: speed against accuracy</title><link rel="icon" href="data:,"><style>{STYLE}</style></head><body>
+<h1>edgewalk: speed against accuracy</h1>
+<p>edgewalk is a fixed-point 3D rasterizer for microcontrollers that is told how much error a scene can bear and does no more work
+than that. This page shows what each way of drawing a texture costs on six processors, and how far from the truth it is.</p>
+<nav><a href="#cost">Cost</a> <a href="#accuracy">Accuracy</a> <a href="#auto">The automatic choice</a> <a href="#stability">Where methods fail</a>
+{" ".join(f'<a href="#scene-{scene}">Scene {scene}</a>' for scene in scenes)} <a href="#how">How it was measured</a></nav>
+
+<h2 id="cost">What a picture costs</h2>
+<p>Executed instructions per fragment, and in brackets modelled cycles, of the automatic choice with a tolerance of 1/4 pixel and a
+reciprocal table of {bits} bits (the default). 320 x 240 pixels, RGB565, 16-bit depth, nearest texel.</p>
+{summary(rows, bits)}
+<p class="soft">{"; ".join(f"{name}: {text}" for name, text in TARGETS.items())}. All rows:
+<a href="speed_accuracy.csv">speed_accuracy.csv</a>, <a href="cycles.csv">cycles.csv</a>.</p>
+
+<h2 id="accuracy">How far from the truth</h2>
+<p>Against the referee, the same on every target. Methods: one linear map over the whole triangle (affine) or over runs of 8, 16 or 32
+pixels, runs as long as the bound allows (runs), a reciprocal for each pixel from the table (table) or refined (exact), and the automatic choice.</p>
+{accuracy(rows, bits)}
+
+<h2 id="auto">The automatic choice against the cheapest</h2>
+<p>The automatic choice should cost no more than 5 % above the cheapest single method whose bound holds the tolerance for the
+whole scene, and no more than 10 % above the cheapest that only turned out to keep it. Counted over all scenes, tolerances and
+table sizes; <a href="auto.csv">auto.csv</a> names both for every case.</p>
+{auto_tables(auto, bits)}
+
+<h2>Scenes</h2>
+<p>The error maps' colours: grey is a pixel without a texture to judge.</p>
+<div class="scale"></div><div class="scale-ends soft"><span>0</span><span>the scale's end, and beyond</span></div>
+{"".join(scene_section(scene, names, differing) for scene in scenes)}
+
+<h2 id="stability">Where methods fail</h2>
+{stability(out)}
+
+<h2 id="how">How it was measured, and how to repeat it</h2>
+{HOW}
+<p>Where the timings are from:</p>{sources()}
+<p>Made with:</p><pre>{html.escape(chr(10).join(f"{target}: {text}" for target, text in versions.items()))}</pre>
+<pre>make report            # this page, its tables and charts
+make stability         # where methods fail
+make count             # the counts of the default table on a terminal
+make check-counts      # fails where a count has grown by more than 1 %</pre>
+</body></html>
+"""
+    check_images(out, text)
+    with open(os.path.join(out, "index.html"), "w", encoding="utf-8") as f:
+        f.write(text)

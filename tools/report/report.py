@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+"""Writes the report: tables, charts, pictures and a page that shows them.
+
+usage: report.py --build DIR --out DIR --bits "4 5 ..." --scenes "NAME=FILE.ewb ..." TARGET ...
+
+DIR of the build holds, for each size of the reciprocal table, the images that tools/cycles counts
+and the program that judges them. Two jobs run side by side.
+"""
+import argparse
+import concurrent.futures
+import csv
+import os
+import sys
+import time
+
+import baseline
+import charts
+import count
+import page
+import tables
+
+
+class Progress:
+    """One line on a terminal; nothing elsewhere."""
+
+    def __init__(self, steps):
+        self.steps, self.done, self.began = steps, 0, time.monotonic()
+
+    def say(self, what):
+        if sys.stderr.isatty():
+            print(f"\r\033[K[{self.done}/{self.steps}] {time.monotonic() - self.began:.0f} s: {what}", end="", file=sys.stderr, flush=True)
+
+    def step(self, what):
+        self.done += 1
+        self.say(what)
+
+    def end(self):
+        if sys.stderr.isatty():
+            print(file=sys.stderr)
+
+
+def judge(build, bits, scenes):
+    return list(csv.DictReader(count.run([os.path.join(build, str(bits), "judge"), *scenes]).splitlines()))
+
+
+def measure(args, progress):
+    """Rows of speed_accuracy for every size of the table."""
+    cases, rows = count.list_cases(args.build), []
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        names, jobs = {}, {}
+        for bits in args.bits:
+            jobs[bits, "judged"] = pool.submit(judge, args.build, bits, args.scenes)
+            for target in args.targets:
+                jobs[bits, target] = pool.submit(count.count, args.build, bits, target, cases)
+        names = {job: key for key, job in jobs.items()}
+        try:
+            for job in concurrent.futures.as_completed(names):
+                job.result()
+                progress.step(f"{names[job][1]}, table of {names[job][0]} bits")
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+        for bits in args.bits:
+            counts = {target: jobs[bits, target].result() for target in args.targets}
+            rows += tables.speed_accuracy(bits, jobs[bits, "judged"].result(), cases, counts)
+    return rows
+
+
+def draw_pictures(args, bits):
+    """{scene: (differing, pixels)}"""
+    folder = os.path.join(args.out, "pictures")
+    os.makedirs(folder, exist_ok=True)
+    lines = count.run([os.path.join(args.build, str(bits), "judge"), "--pictures", folder, *args.scenes]).split()
+    return {scene: (int(differing), int(pixels)) for scene, differing, pixels in (line.split(",") for line in lines)}
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Writes the report.")
+    parser.add_argument("--build", required=True)
+    parser.add_argument("--out", required=True)
+    parser.add_argument("--bits", required=True, type=lambda text: [int(b) for b in text.split()])
+    parser.add_argument("--scenes", required=True, type=str.split)
+    parser.add_argument("targets", nargs="+", choices=count.TARGETS)
+    args = parser.parse_args()
+    default = count.DEFAULT_BITS if count.DEFAULT_BITS in args.bits else args.bits[-1]
+    progress = Progress(len(args.bits) * (len(args.targets) + 1) + 2)
+    rows = measure(args, progress)
+    auto = list(tables.auto_rows(rows))
+    tables.write(os.path.join(args.out, "speed_accuracy.csv"), tables.COLUMNS, rows)
+    tables.write(os.path.join(args.out, "cycles.csv"), tables.CYCLE_COLUMNS, tables.cycle_rows(rows))
+    tables.write(os.path.join(args.out, "auto.csv"), tables.AUTO_COLUMNS, auto)
+    here = os.path.dirname(os.path.abspath(__file__))
+    names = charts.draw(os.path.join(args.out, "charts"), rows, os.path.join(here, "references.csv"), default, progress.say)
+    progress.step("pictures")
+    differing = draw_pictures(args, default)
+    page.write(args.out, rows, auto, names, differing, default, {target: baseline.versions(target) for target in args.targets})
+    progress.step("page")
+    progress.end()
+    over = sum(row["state"] == "over" for row in auto)
+    beyond = {(row["recip_bits"], row["scene"], tables.label(row)) for row in rows if row["beyond"]}
+    for bits, scene, label in sorted(beyond):
+        print(f"report: scene {scene}, {label}, table of {bits} bits: displaced beyond its bound")
+    print(f"report: {args.out}/index.html; {len(rows)} rows of speed_accuracy.csv; auto: {len(auto) - over} of {len(auto)} "
+          "as cheap as the cheapest rung, within 5 % of what the bound allows and 10 % of what measures so")
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (count.Failed, tables.Failed, OSError) as e:
+        sys.exit(f"report.py: {e}")
