@@ -55,8 +55,8 @@ static int draw_standard(char name, ew_rung rung, uint16_t tolerance, measures *
     if (error) return error;
     ew_transform_vertices(&geometry.transform, scene.vertices, scene.vertex_count, screen);
     measure_begin(&target, &eye, BACKGROUND);
-    error = measure_mesh(&geometry, exact, scene.vertices, screen, scene.indices, scene.index_count,
-                         scene.uv_fraction_bits);
+    const ew_mesh mesh = { scene.vertices, screen, NULL, scene.indices, scene.index_count, scene.uv_fraction_bits };
+    error = measure_mesh(&geometry, exact, &mesh);
     measure_end(m, 0.125);
     return error;
 }

@@ -339,7 +339,8 @@ static void near_plane(const pen *p)
         if (!c.error) c.error = ew_transform_set(&geometry.transform, &projection, &model_view, &viewport);
         if (!c.error) {
             ew_transform_vertices(&geometry.transform, v, 4, screen);
-            c.error = measure_mesh(&geometry, exact, v, screen, indices, 6, 4);
+            const ew_mesh mesh = { v, screen, NULL, indices, 6, 4 };
+            c.error = measure_mesh(&geometry, exact, &mesh);
         }
         measures m = end(&c);
         report("near_plane_z_over_near", p, thousandths[k] / 1000.0, &c, &m, 0, no_limit);
