@@ -217,6 +217,10 @@ static void run_scale_init(ew_triangle *t, uint32_t m, int zeros, uint32_t toler
     t->run_exponent = 100;
     t->run_shift = 0;
     if (m == 0 || t->rung != EW_RUNG_RUNS) return;
+    if (tolerance == 0) { /* no run at all */
+        t->run_scale = 0;
+        return;
+    }
     /* 64 tolerance / |dw| = 64 k 2^15 2^zeros / 2^62 */
     uint32_t k = (ew_recip_table(m) >> 15) * tolerance; /* < 2^25; tolerance > 0, r > 2^30 */
     int up = ew_clz32(k);

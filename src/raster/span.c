@@ -69,11 +69,12 @@ EW_ALWAYS_INLINE uint32_t slope(uint32_t a, uint32_t da, uint32_t dw, divisor d)
  * at most 2.2 % short. 16 EW_LONGEST_RUN at most. */
 EW_ALWAYS_INLINE uint32_t root_of(uint32_t product, int exponent)
 {
+    if (product == 0) return 0;
     int zeros = ew_clz32(product);
     uint32_t m = (product << zeros) >> 16; /* 2^15 to 2^16 */
     exponent += 31 - zeros;
     if (exponent >= 26) return 16 * EW_LONGEST_RUN;
-    if (exponent < 0 || zeros == 32) return 0;
+    if (exponent < 0) return 0;
     /* 2^15 sqrt(m / 2^15), or sqrt 2 times that: (2 - sqrt 2) + (sqrt 2 - 1) x, times sqrt 2 */
     uint32_t root = exponent & 1 ? 27145u + (m * 19194u >> 15) : 19195u + (m * 13572u >> 15);
     return root >> (15 - (exponent >> 1));
@@ -258,14 +259,18 @@ EW_NOINLINE void piece_of_texture(packing *k, const ew_triangle *t, linear *l, i
 /* ---- everything else ---- */
 
 /* A shade inside its range at both ends is inside everywhere: a tangent may leave it. */
-static int32_t clamp_shade(int32_t s) { return s < 0 ? 0 : s > (1 << 24) ? 1 << 24 : s; }
+static int32_t clamp_shade(int32_t s)
+{
+    const int32_t all = (int32_t)1 << 24;
+    return s < 0 ? 0 : s > all ? all : s;
+}
 
 static void shade_run(ew_run *run, const ew_triangle *t, const attribute_run *from, int32_t n)
 {
     enum { DOWN = EW_FRACTION(EW_SHADE_BITS) - 16 };
     for (int i = 0; i < 3; i++) {
         /* rounds to nearest where fill.c drops the fraction */
-        int32_t origin = t->shade_origin[i] * 16 + (1 << 15), step = EW_ASR((int32_t)from->dshade[i], DOWN);
+        int32_t origin = t->shade_origin[i] * 16 + 32768, step = EW_ASR((int32_t)from->dshade[i], DOWN);
         int32_t start = origin + EW_ASR((int32_t)from->shade[i], DOWN), end = start + step * (n - 1);
         run->shade[i] = clamp_shade(start);
         run->dshade[i] = step;
