@@ -1,5 +1,6 @@
 """Builds the core for the cores it is meant for, and reads sizes and stacks out of what the
 compiler says. Used by size.py and test_static.py; nothing is run."""
+import hashlib
 import os
 import re
 import shutil
@@ -16,11 +17,16 @@ TARGETS = {
 PACKAGES = {"arm-none-eabi-": "gcc-arm-none-eabi", "riscv64-unknown-elf-": "gcc-riscv64-unknown-elf"}
 LEVELS = ("-Os", "-O2")
 
-# What a firmware may link: the header whose functions it calls, the layers it builds, -D options.
+# What a firmware may link: the headers whose functions it calls, the layers it builds, -D options.
+PARTS = ["SHADING", "FOG", "BLENDS", "CUTOUTS", "BILINEAR", "MIPS", "WRAPS", "TEXTURE_FORMATS", "TARGET_FORMATS", "DITHER"]
+NO_FILLS = [f"-DEW_WITH_{part}=0" for part in PARTS]
+RASTER, GEOMETRY = ("fixed", "src/raster"), ("fixed", "src/raster", "src/geometry")
 CONFIGURATIONS = {
-    "textured, depth": (("raster",), ("fixed", "src/raster"), []),
-    "with transform": (("raster", "geometry", "light"), ("fixed", "src/raster", "src/geometry"), []),
-    "everything": (("fixed", "raster", "geometry", "light", "scene", "error"), ("fixed", "src/raster", "src/geometry", "src/scene"), []),
+    "textured, depth": (("raster",), RASTER, NO_FILLS),
+    "the same with transform": (("raster", "geometry"), GEOMETRY, NO_FILLS),
+    "raster, all fills": (("raster",), RASTER, []),
+    "the same with transform and light": (("raster", "geometry", "light"), GEOMETRY, []),
+    "everything, with scenes": (("fixed", "raster", "geometry", "light", "scene", "error"), GEOMETRY + ("src/scene",), []),
     "display, device side": (("display",), ("fixed", "src/display"), []),
 }
 
@@ -53,7 +59,7 @@ def newest(root):
 def build(target, level, layers, defines, out, root=ROOT):
     """Objects, with the compiler's call graph and frames beside them (.ci)."""
     prefix, flags = TARGETS[target]
-    folder = os.path.join(out, target + level + "".join(defines))
+    folder = os.path.join(out, target + level + ("-" + hashlib.sha1("".join(defines).encode()).hexdigest()[:8] if defines else ""))
     os.makedirs(folder, exist_ok=True)
     changed, objects = newest(root), []
     for path in sources(root, layers):

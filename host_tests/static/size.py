@@ -17,7 +17,7 @@ import cross
 
 
 def measure(root, out):
-    """({(target, level, kind, name): (text, data, bss, helpers)}, {(target, level, function): (bytes, chain)})"""
+    """({(target, level, kind, name): (text, data, bss, helpers)}, {(target, level, configuration, function): (bytes, chain)})"""
     sizes, stacks = {}, {}
     for target, (prefix, _) in cross.TARGETS.items():
         if cross.missing(target):
@@ -29,8 +29,8 @@ def measure(root, out):
                 sizes[target, level, "configuration", name] = cross.linked_size(target, objects, roots, out)
                 graph = cross.Stacks(objects)
                 for function in roots:
-                    stacks[target, level, function] = graph.depth(function)
-                for path in objects:
+                    stacks[target, level, name, function] = graph.depth(function)
+                for path in () if defines else objects:
                     sizes[target, level, "object", os.path.basename(path)] = (*cross.object_size(path, prefix), "na")
     return sizes, stacks
 
@@ -84,7 +84,7 @@ def main():
             rows.writerow([*key, *size, change(size[0], old_sizes[key][0] if key in old_sizes else None)])
     with open(os.path.join(args.report, "stack.csv"), "w", newline="", encoding="utf-8") as f:
         rows = csv.writer(f)
-        rows.writerow(["target", "level", "function", "bytes", "change", "deepest"])
+        rows.writerow(["target", "level", "configuration", "function", "bytes", "change", "deepest"])
         for key, (deep, chain) in sorted(stacks.items()):
             rows.writerow([*key, deep, change(deep, old_stacks[key][0] if key in old_stacks else None), " > ".join(chain)])
 
@@ -96,8 +96,8 @@ def main():
                 delta = change(size[0], old_sizes[key][0] if key in old_sizes else None)
                 line += f"{f'{size[0]} ({size[3]}, {delta})':>24s}"
         print(f"{name:44s}{line}")
-    (target, level, function), (deep, chain) = max(stacks.items(), key=lambda item: item[1][0])
-    print(f"deepest stack: {deep} bytes, {function} on {target} at {level}: {' > '.join(chain)}")
+    (target, level, name, function), (deep, chain) = max(stacks.items(), key=lambda item: item[1][0])
+    print(f"deepest stack: {deep} bytes, {function} ({name}) on {target} at {level}: {' > '.join(chain)}")
     return 0
 
 

@@ -488,34 +488,6 @@ static void arguments_are_checked(void **state)
     assert_int_equal(ew_raster_triangle(&r, &a, &b, &v), EW_ERR_RANGE);
 }
 
-/* Any bits at all: an error code or a drawn triangle, nothing written outside. UBSan and
- * ASan watch this one in MODE=sanitize. */
-static void any_bits(void **state)
-{
-    (void)state;
-    static uint16_t texels[64 * 64];
-    start(1);
-    for (int n = 0; n < 400000; n++) {
-        ew_texture texture = { .texels = texels, .width = (uint16_t)(1u << test_random() % 7), .height = (uint16_t)(1u << test_random() % 7) };
-        ew_material m = { .texture = test_random() & 3 ? &texture : NULL, .colour = (uint16_t)test_random(), .tolerance = (uint16_t)(test_random() & 1 ? 0 : test_random() % 300), .rung = (uint8_t)(test_random() % 6), .flags = (uint8_t)(test_random() % 9) };
-        if (ew_raster_set_material(&raster, &m) != EW_OK) continue;
-        ew_raster_vertex v[3];
-        for (int i = 0; i < 3; i++) {
-            v[i].x = test_random() & 7 ? coordinate(W) : test_awkward();
-            v[i].y = test_random() & 7 ? coordinate(H) : test_awkward();
-            v[i].w = test_random() & 1 ? test_random() >> (test_random() & 31) : (uint32_t)test_awkward();
-            v[i].u = test_awkward() >> (test_random() & 15);
-            v[i].v = test_awkward() >> (test_random() & 15);
-        }
-        test_context("%d %d %u %d %d, %d %d %u %d %d, %d %d %u %d %d, rung %d tolerance %d", v[0].x, v[0].y, v[0].w, v[0].u,
-                     v[0].v, v[1].x, v[1].y, v[1].w, v[1].u, v[1].v, v[2].x, v[2].y, v[2].w, v[2].u, v[2].v, m.rung,
-                     m.tolerance);
-        int result = ew_raster_triangle(&raster, &v[0], &v[1], &v[2]);
-        assert_true(result == 0 || result == 1 || result == EW_ERR_RANGE);
-    }
-    check_borders();
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -531,7 +503,6 @@ int main(void)
         TEST(scissor_cuts_exactly),
         TEST(the_largest_target),
         TEST(arguments_are_checked),
-        TEST(any_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
