@@ -3,7 +3,7 @@
 
 #include "edgewalk/fixed.h"
 
-enum { CALLS = 500 };
+enum { CALLS = 250 };
 
 static uint32_t hash;
 static generator g;
@@ -78,6 +78,25 @@ static void one_vector(void)
     for (int i = 0; i < 6; i++) add32((uint32_t)*p[i]);
 }
 
+static void add_quat(const ew_quat *q)
+{
+    add32((uint32_t)q->x);
+    add32((uint32_t)q->y);
+    add32((uint32_t)q->z);
+    add32((uint32_t)q->w);
+}
+static void one_quaternion(void)
+{
+    ew_quat a, b, c;
+    int32_t *p[8] = { &a.x, &a.y, &a.z, &a.w, &b.x, &b.y, &b.z, &b.w };
+    for (int i = 0; i < 8; i++) *p[i] = any_signed();
+    add32((uint32_t)ew_quat_normalise(&a, &a));
+    add32((uint32_t)ew_quat_slerp(&c, &a, &b, random32(&g) >> 1));
+    add_quat(&c);
+    ew_quat_mul(&a, &a, &c);
+    add_quat(&a);
+}
+
 static void add_row(const ew_row *row)
 {
     for (int i = 0; i < 4; i++) add32((uint32_t)row->m[i]);
@@ -125,7 +144,7 @@ void fixed_bits(void)
     } groups[] = {
         { "recip_table", one_recip_table }, { "recip_newton", one_recip_newton }, { "sqrt64", one_sqrt },
         { "clz", one_clz }, { "q16_16", one_q16_16 }, { "division", one_division }, { "vector", one_vector },
-        { "matrix", one_matrix },
+        { "quaternion", one_quaternion }, { "matrix", one_matrix },
     };
     for (unsigned i = 0; i < sizeof groups / sizeof *groups; i++) {
         hash = UINT32_C(0x811C9DC5);

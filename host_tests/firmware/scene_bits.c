@@ -23,13 +23,15 @@ static void draw(const bench_scene *s, const bench_method *method, uint16_t tole
                                .width = width, .height = height, .stride = width };
     const ew_texture texture = { .texels = bench_texture, .width = 256, .height = 256 };
     const ew_material material = { .texture = &texture, .tolerance = tolerance, .rung = method->rung };
+    const ew_mesh mesh = { .vertices = s->vertices, .screen = screen, .indices = s->indices,
+                           .index_count = s->index_count, .uv_fraction_bits = 4 };
     int32_t result = ew_raster_init(&raster, &target);
     ew_raster_clear(&raster, 0);
     if (!result) result = ew_raster_set_material(&raster, &material);
     ew_geometry_init(&geometry, &raster);
     if (!result) result = bench_view(&geometry.transform, width);
     ew_transform_vertices(&geometry.transform, s->vertices, s->vertex_count, screen);
-    if (!result) result = ew_draw_triangles(&geometry, s->vertices, screen, s->indices, s->index_count, 4);
+    if (!result) result = ew_draw_triangles(&geometry, &mesh);
     if (result <= 0) print_failure(s->name, method->name);
     uint32_t hash = picture_hash(PICTURE_HASH_START, same_colour, pixels);
     print_hash(s->name, method->name, tolerance, size, picture_hash(hash, same_depth, pixels));

@@ -153,9 +153,14 @@ def rgb565(pixels):
     return bytes(value >> (2 if i % 3 == 1 else 3) for i, value in enumerate(pixels))
 
 
-def grey4(red, green, blue):
-    """Luma of BT.601 in 16 steps, as the panel's firmware has it."""
-    return (632 * red + 610 * green + 241 * blue) >> 12
+def grey4(red, green, blue, x, y):
+    """A pixel of EW_TARGET_GREY4 with dither, from channels of 5, 6 and 5 bits: docs/fills.md."""
+    grey = (77 * (132 * red + red // 8) + 150 * 65 * green + 29 * (132 * blue + blue // 8)) // 256
+    threshold = 0
+    for bit in range(3):  # of x and y, the lowest counts most
+        across, down = x >> bit & 1, y >> bit & 1
+        threshold += (2 * (across ^ down) + down) << (4 - 2 * bit)
+    return (grey - grey // 16 + 4 * threshold) // 256
 
 
 class Oled(unittest.TestCase):
@@ -174,9 +179,9 @@ class Oled(unittest.TestCase):
         for (width, height, pixels), rows in zip(shown.frames, host_pictures("crate.ewb", "128x64", self.FRAMES, 10)):
             self.assertEqual((width, height), (512, 256))
             wanted = b""
-            for row in rows:
+            for y, row in enumerate(rows):
                 channels = rgb565(row)
-                levels = [grey4(*channels[i:i + 3]) for i in range(0, len(channels), 3)]
+                levels = [grey4(*channels[3 * x:3 * x + 3], x, y) for x in range(len(channels) // 3)]
                 greys.update(levels)
                 wanted += b"".join(bytes([17 * level]) * 12 for level in levels) * 4
             total += sum(pixels[i:i + 3] != wanted[i:i + 3] for i in range(0, len(wanted), 3))

@@ -5,9 +5,19 @@
 #include "../../examples/firmware/picture_hash.h"
 #include "edgewalk/raster.h"
 
-enum { WIDTH = 64, BAND_ROWS = 12, BANDS = 4, TRIANGLES = 40, TEXTURE = 16 };
+enum { WIDTH = 64, BAND_ROWS = 12, BANDS = 4, TRIANGLES = 8, TEXTURE = 16, LEVELS = 5 };
 
-static uint16_t texels[TEXTURE * TEXTURE];
+/* The texture with its mip levels; its first 256 entries serve as palette and mask, too. */
+static uint16_t texels[256 + 64 + 16 + 4 + 1];
+
+/* One way to draw the set. Zeros: the rung is chosen, everything is RGB565, nothing else happens. */
+typedef struct triangle_case {
+    const char *method;
+    uint8_t rung, tolerance;
+    uint8_t flags, blend, filter;
+    uint8_t texture_format, wrap, levels;
+    uint8_t target_format, dither;
+} triangle_case;
 
 /* Most are of the picture's size and many reach over its borders; near/z over a range of 32. */
 static void any_corner(generator *g, ew_raster_vertex *corner, int32_t first_row)
@@ -24,52 +34,93 @@ static void any_corner(generator *g, ew_raster_vertex *corner, int32_t first_row
     corner->colour.b = (uint8_t)(colour >> 16);
 }
 
-static uint32_t draw(const ew_material *material)
+static uint32_t draw(const ew_target *picture, const ew_material *material)
 {
-    const ew_target target = { .colour = same_colour, .depth = same_depth,
-                               .width = WIDTH, .height = BAND_ROWS, .stride = WIDTH };
+    static const uint8_t bits[] = { 16, 16, 8, 8, 4, 1 }; /* of a pixel, by ew_target_format */
+    const uint32_t units = WIDTH * BAND_ROWS / 16 * bits[picture->format];
     uint32_t hash = PICTURE_HASH_START;
-    ew_raster raster;
-    int drawn = 0, result = ew_raster_init(&raster, &target);
-    if (!result) result = ew_raster_set_material(&raster, material);
-    for (int band = 0; band < BANDS; band++) {
+    ew_target target = *picture;
+    int drawn = 0, result = 0;
+    for (int band = 0; band < BANDS && result >= 0; band++) {
         generator g = { 2463534242u };
+        ew_raster raster;
+        target.dither_y = (uint16_t)(band * BAND_ROWS);
+        result = ew_raster_init(&raster, &target);
+        if (!result) result = ew_raster_set_material(&raster, material);
+        if (!result) result = ew_raster_set_fog(&raster, 0xC618, UINT32_C(1) << 31, UINT32_C(1) << 27);
         ew_raster_clear(&raster, 0x18E3);
         for (int i = 0; i < TRIANGLES; i++) {
-            ew_raster_vertex corner[3] = { 0 };
+            ew_raster_vertex corner[3];
             for (int k = 0; k < 3; k++) any_corner(&g, &corner[k], band * (int32_t)BAND_ROWS);
             if (result >= 0) result = ew_raster_triangle(&raster, &corner[0], &corner[1], &corner[2]);
             drawn += result > 0;
         }
-        hash = picture_hash(hash, same_colour, WIDTH * BAND_ROWS);
+        hash = picture_hash(hash, same_colour, units);
         hash = picture_hash(hash, same_depth, WIDTH * BAND_ROWS);
     }
     if (result < 0 || drawn < TRIANGLES) print_failure("triangles", ew_error_text(result));
     return hash;
 }
 
+static const triangle_case cases[] = {
+    { "constant", .rung = EW_RUNG_CONSTANT },
+    { "affine", .rung = EW_RUNG_AFFINE },
+    { "runs8", .rung = EW_RUNG_RUNS_8 },
+    { "runs32", .rung = EW_RUNG_RUNS_32 },
+    { "table", .rung = EW_RUNG_TABLE },
+    { "exact", .rung = EW_RUNG_EXACT },
+    { "runs", .rung = EW_RUNG_RUNS, .tolerance = 4 },
+    { "auto", .tolerance = 0 },
+    { "auto", .tolerance = 4 },
+    { "auto", .tolerance = 16 },
+    { "without-depth", .flags = EW_NO_DEPTH_TEST | EW_NO_DEPTH_WRITE },
+    { "shaded", .flags = EW_SHADED },
+    { "shaded-constant", .rung = EW_RUNG_CONSTANT, .flags = EW_SHADED },
+    { "fog", .flags = EW_FOG },
+    { "half", .blend = EW_BLEND_HALF },
+    { "add", .blend = EW_BLEND_ADD },
+    { "key", .flags = EW_COLOUR_KEY },
+    { "mask", .flags = EW_ALPHA_MASK },
+    { "clamp", .wrap = EW_WRAP_CLAMP },
+    { "mirror", .wrap = EW_WRAP_MIRROR },
+    { "bilinear", .filter = EW_FILTER_BILINEAR },
+    { "mips", .levels = LEVELS },
+    { "trilinear", .filter = EW_FILTER_TRILINEAR, .levels = LEVELS },
+    { "rgb332", .texture_format = EW_TEXTURE_RGB332 },
+    { "grey8", .texture_format = EW_TEXTURE_GREY8 },
+    { "palette8", .texture_format = EW_TEXTURE_PALETTE8 },
+    { "palette4", .texture_format = EW_TEXTURE_PALETTE4 },
+    { "palette1", .texture_format = EW_TEXTURE_PALETTE1 },
+    { "to-swapped", .target_format = EW_TARGET_RGB565_SWAPPED },
+    { "to-rgb332", .target_format = EW_TARGET_RGB332 },
+    { "to-grey8", .target_format = EW_TARGET_GREY8 },
+    { "to-grey4", .target_format = EW_TARGET_GREY4 },
+    { "to-mono", .target_format = EW_TARGET_MONO },
+    { "to-rgb565-dithered", .flags = EW_SHADED, .dither = 1 },
+    { "to-grey4-dithered", .target_format = EW_TARGET_GREY4, .dither = 1 },
+    { "to-mono-dithered", .target_format = EW_TARGET_MONO, .dither = 1 },
+    { "all", .tolerance = 4, .flags = EW_SHADED | EW_FOG | EW_COLOUR_KEY, .blend = EW_BLEND_HALF,
+      .filter = EW_FILTER_TRILINEAR, .wrap = EW_WRAP_MIRROR, .levels = LEVELS,
+      .target_format = EW_TARGET_RGB565_SWAPPED, .dither = 1 },
+};
+
 void triangle_bits(void)
 {
-    static const struct {
-        const char *method;
-        uint8_t rung, tolerance, flags;
-    } cases[] = {
-        { "constant", EW_RUNG_CONSTANT, 0, 0 },
-        { "affine", EW_RUNG_AFFINE, 0, 0 },
-        { "table", EW_RUNG_TABLE, 0, 0 },
-        { "exact", EW_RUNG_EXACT, 0, 0 },
-        { "runs", EW_RUNG_RUNS, 4, 0 },
-        { "auto", EW_RUNG_AUTO, 0, 0 },
-        { "auto", EW_RUNG_AUTO, 4, 0 },
-        { "auto", EW_RUNG_AUTO, 16, 0 },
-        { "without-depth", EW_RUNG_AUTO, 4, EW_NO_DEPTH_TEST | EW_NO_DEPTH_WRITE },
-    };
     generator g = { 1 };
-    for (int i = 0; i < TEXTURE * TEXTURE; i++) texels[i] = (uint16_t)random32(&g);
-    const ew_texture texture = { .texels = texels, .width = TEXTURE, .height = TEXTURE };
+    for (unsigned i = 0; i < sizeof texels / sizeof *texels; i++) texels[i] = (uint16_t)random32(&g);
     for (unsigned i = 0; i < sizeof cases / sizeof *cases; i++) {
-        const ew_material material = { .texture = &texture, .colour = 0xFBE0, .tolerance = cases[i].tolerance,
-                                       .rung = cases[i].rung, .flags = EW_DOUBLE_SIDED | cases[i].flags };
-        print_hash("triangles", cases[i].method, cases[i].tolerance, "64x48", draw(&material));
+        const triangle_case *c = &cases[i];
+        const ew_target target = { .colour = same_colour, .depth = same_depth,
+                                   .width = WIDTH, .height = BAND_ROWS, .stride = WIDTH,
+                                   .format = c->target_format, .dither = c->dither };
+        const ew_texture texture = { .texels = texels, .width = TEXTURE, .height = TEXTURE, .palette = texels,
+                                     .mask = (const uint8_t *)texels, .key = texels[0],
+                                     .format = c->texture_format, .wrap_u = c->wrap, .wrap_v = c->wrap,
+                                     .levels = c->levels };
+        const ew_material material = { .texture = c->rung == EW_RUNG_CONSTANT ? NULL : &texture, .colour = 0xFBE0,
+                                       .tolerance = c->tolerance, .rung = c->rung,
+                                       .flags = EW_DOUBLE_SIDED | c->flags,
+                                       .blend = c->blend, .filter = c->filter };
+        print_hash("triangles", c->method, c->tolerance, "64x48", draw(&target, &material));
     }
 }

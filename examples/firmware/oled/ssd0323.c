@@ -75,13 +75,12 @@ void panel_init(void)
     send(commands, sizeof commands, 0);
 }
 
-void panel_home(void)
+void panel_show(const uint8_t pixels[PANEL_ROW_BYTES * PANEL_HEIGHT])
 {
     static const uint8_t commands[] = {
         0x15, PANEL_FIRST_COLUMN, PANEL_ROW_BYTES - 1, /* columns */
         0x75, 0, PANEL_HEIGHT - 1                      /* rows    */
     };
     send(commands, sizeof commands, 0);
+    send(pixels, PANEL_ROW_BYTES * PANEL_HEIGHT, 1);
 }
-
-void panel_row(const uint8_t pixels[PANEL_ROW_BYTES]) { send(pixels, PANEL_ROW_BYTES, 1); }

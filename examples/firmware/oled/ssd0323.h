@@ -9,11 +9,7 @@ enum { PANEL_WIDTH = 128, PANEL_HEIGHT = 64, PANEL_ROW_BYTES = PANEL_WIDTH / 2 }
 /* Sets the port up and switches the panel on. */
 void panel_init(void);
 
-/* Points the panel's memory at the top-left pixel. */
-void panel_home(void);
-
-/* Sends one row of pixels, two to a byte, the left one in the high four bits; the next goes
- * into the row below. */
-void panel_row(const uint8_t pixels[PANEL_ROW_BYTES]);
+/* Shows a picture: two pixels to a byte, the left one in the high four bits. */
+void panel_show(const uint8_t pixels[PANEL_ROW_BYTES * PANEL_HEIGHT]);
 
 #endif
