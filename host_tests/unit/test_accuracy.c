@@ -78,7 +78,7 @@ static void exact_rung(void **state)
         measures m = draw(name, EW_RUNG_EXACT, 0);
         hold(name, &m);
         uv_limits(&m, 0.002, 1.0 / 64);
-        assert_int_equal(m.rung[EW_RUNG_EXACT] + m.rung[EW_RUNG_TABLE], m.fragments);
+        assert_int_equal(m.rung[EW_RUNG_EXACT] + m.rung[EW_RUNG_TABLE] + m.rung[EW_RUNG_RUNS], m.fragments);
         assert_true(m.u_rms <= 0.02 && m.v_rms <= 0.02);
         assert_int_equal(m.within_e, m.fragments);
         assert_true(m.disp_max == 0);
@@ -113,14 +113,15 @@ static void runs_keep_their_tolerance_and_use_it(void **state)
     }
 }
 
-/* One reciprocal for each pixel; the table's is good enough up to 512 texels. */
+/* One reciprocal for each pixel - the table's is good enough up to 512 texels -, or runs along
+ * rows on which 1/z does not change. */
 static void tolerance_zero_is_exact(void **state)
 {
     (void)state;
     for (char name = 'A'; name <= 'E'; name++) {
         measures m = draw(name, EW_RUNG_AUTO, 0);
         hold(name, &m);
-        assert_int_equal(m.rung[EW_RUNG_EXACT] + m.rung[EW_RUNG_TABLE], m.fragments);
+        assert_int_equal(m.rung[EW_RUNG_EXACT] + m.rung[EW_RUNG_TABLE] + m.rung[EW_RUNG_RUNS], m.fragments);
         assert_true(m.u_rms <= 0.02 && m.v_rms <= 0.02);
     }
 }

@@ -166,6 +166,7 @@ typedef struct ew_raster {
     uint16_t fog_colour;
     uint8_t fog_shift;
     uint8_t log2_width, log2_height; /* of the texture, rounded up                         */
+    uint16_t shortest_run; /* px: below that a pixel each is cheaper (ew_raster_set_cost)  */
     uint8_t plain; /* 1: depth tested and written, RGB565 to RGB565, nearest, repeated, nothing else */
 } ew_raster;
 
@@ -186,6 +187,20 @@ int ew_raster_set_material(ew_raster *raster, const ew_material *material);
  * w_far, linear in near/z between. Returns EW_OK, EW_ERR_ARGUMENT unless w_far < w_near <=
  * 2^31, or EW_ERR_UNSUPPORTED. */
 int ew_raster_set_fog(ew_raster *raster, uint16_t rgb565, ew_uq1_31 w_near, ew_uq1_31 w_far);
+
+/* What the automatic choice between runs and single pixels goes by, in instructions of a
+ * target: a run takes `run` and `run_pixel` for each of its pixels, a pixel of its own takes
+ * `pixel`. It depends on nothing else, so pictures drawn with equal costs are equal bit for
+ * bit on every target. Fields are at least 1, and `pixel` is above `run_pixel`. */
+typedef struct ew_cost {
+    uint16_t run, run_pixel, pixel;
+} ew_cost;
+
+/* Counted with `make count`; the generic one, which ew_raster_init sets, lies between them. */
+extern const ew_cost ew_cost_generic, ew_cost_m0plus, ew_cost_m3, ew_cost_host;
+
+/* Returns EW_OK or EW_ERR_ARGUMENT. */
+int ew_raster_set_cost(ew_raster *raster, const ew_cost *cost);
 
 /* Fills the scissor rectangle with a colour, converted and dithered as drawn ones are, and
  * its depth with 0. */

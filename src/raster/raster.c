@@ -17,6 +17,7 @@ int ew_raster_init(ew_raster *raster, const ew_target *target)
     raster->fog_near = raster->fog_far = raster->fog_scale = 0;
     raster->fog_colour = 0;
     raster->fog_shift = 0;
+    ew_raster_set_cost(raster, &ew_cost_generic);
     ew_material black = { .rung = EW_RUNG_CONSTANT };
     return ew_raster_set_material(raster, &black);
 }

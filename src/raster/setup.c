@@ -231,7 +231,14 @@ static void run_scale_init(ew_triangle *t, uint32_t m, int zeros, uint32_t toler
 
 static void runs_init(ew_triangle *t, const ew_raster *raster)
 {
+    /* where 1/z does not change along rows, a run is exact whatever its length */
+    const int flat = t->is_wide ? t->plane.wide[EW_PLANE_W].dx == 0 : t->plane.narrow[EW_PLANE_W].dx == 0;
+    if (flat && raster->material.rung == EW_RUNG_AUTO && t->rung != EW_RUNG_CONSTANT && t->rung != EW_RUNG_AFFINE) {
+        t->rung = EW_RUNG_RUNS;
+    }
     t->longest = EW_LONGEST_RUN;
+    /* an explicit rung is taken at its word, but for runs of one pixel */
+    t->shortest = raster->material.rung == EW_RUNG_AUTO ? (uint16_t)larger(raster->shortest_run, 2) : 2;
     t->run_tolerance = t->rung == EW_RUNG_RUNS ? raster->material.tolerance : 0;
     /* a slope is off by at most half a unit: over the longest run by 1/128 texel */
     if (EW_FRACTION(t->uv_bits) < 15) t->longest = (uint16_t)(1u << (EW_FRACTION(t->uv_bits) - 6));

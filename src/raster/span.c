@@ -231,6 +231,8 @@ EW_NOINLINE void textured_pixels(packing *k, linear *l, int32_t n)
 /* A piece of a span, of at most EW_LONGEST_RUN pixels. */
 EW_NOINLINE void piece_of_texture(packing *k, const ew_triangle *t, linear *l, int32_t n)
 {
+    enum { AT_ONCE = 16 }; /* pixels of their own before the next look whether a run pays */
+    const int32_t shortest = t->shortest;
     if (t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_CONSTANT) {
         fill_textured(k, l->u, l->du, l->v, l->dv, n);
         return;
@@ -241,8 +243,8 @@ EW_NOINLINE void piece_of_texture(packing *k, const ew_triangle *t, linear *l, i
     }
     for (;;) {
         int32_t m = (int32_t)run_length(t, l->w, l->dw, l->align);
-        if (m < 2 && n > 1) {
-            m = smaller(n, 4);
+        if (m < shortest && n > 1) {
+            m = smaller(n, AT_ONCE);
             textured_pixels(k, l, m);
             n -= m;
             if (n == 0) return;

@@ -47,7 +47,7 @@ typedef struct ew_triangle {
     uint16_t run_scale;         /* of run_length in span.c                       */
     int16_t run_exponent;
     uint16_t run_tolerance;     /* 1/16 px, 0 for runs of fixed length           */
-    uint16_t longest;           /* run, px                                       */
+    uint16_t longest, shortest; /* run, px                                       */
     uint8_t run_shift;          /* -run_exponent, 0 to 31: of one_run_suffices   */
     uint8_t attributes;         /* how many planes follow that of w: 0, 2, 5     */
     uint8_t is_wide;
