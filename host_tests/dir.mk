@@ -7,7 +7,8 @@ $(TRACE_OBJS): $(B)/trace/%.o: %.c
 	@mkdir -p $(@D)
 	$(CC) $(CORE_CFLAGS) $(CFLAGS) -DEW_TRACE=1 $(DEPFLAGS) -c -o $@ $<
 
-REFEREE_OBJS := $(addprefix $(B)/host_tests/,reference/referee.o reference/scenes.o accuracy/measure.o)
+REFEREE_OBJS := $(addprefix $(B)/host_tests/,reference/referee.o reference/scenes.o accuracy/measure.o \
+  accuracy/standard_measure.o)
 $(B)/host_tests/%.o: HOST_INC = -DEW_TRACE=1
 
 $(BIN)/ew-accuracy: $(addprefix $(B)/host_tests/accuracy/,accuracy.o scene_measure.o) $(REFEREE_OBJS) \

@@ -6,42 +6,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../accuracy/measure.h"
+#include "../accuracy/standard_measure.h"
 #include "../reference/scenes.h"
 
-static uint16_t texels[256 * 256], colour[STANDARD_WIDTH * STANDARD_HEIGHT], depth[STANDARD_WIDTH * STANDARD_HEIGHT];
+static uint16_t colour[STANDARD_WIDTH * STANDARD_HEIGHT], depth[STANDARD_WIDTH * STANDARD_HEIGHT];
 static standard_scene scene;
-static ew_screen_vertex screen[33 * 33];
 
 static measures draw(char name, ew_rung rung, uint16_t tolerance)
 {
     enum { BACKGROUND = 0x1234 };
-    const ew_target target = { .colour = colour, .depth = depth, .width = STANDARD_WIDTH, .height = STANDARD_HEIGHT, .stride = STANDARD_WIDTH };
-    const ew_texture texture = { .texels = texels, .width = 256, .height = 256 };
-    const ew_material material = { .texture = &texture, .tolerance = tolerance, .rung = (uint8_t)rung };
-    /* focal length 160 px both ways: a square picture, of which the target shows the middle */
-    const ew_viewport viewport = { 0, -40, 320, 320 };
-    const ref_camera eye = { 1, 1, 0.25, 0, -40, 320, 320 };
-    const ew_projection projection = { 65536, 65536, { 1 << 29, -1 } };
-    ew_raster raster;
-    ew_geometry geometry;
-    ew_mat34 model_view;
-    double exact[3][4];
-
-    standard_texture(texels);
-    standard_scene_init(&scene, name);
-    standard_model_view(&model_view, exact);
-    assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
-    ew_raster_clear(&raster, BACKGROUND);
-    assert_int_equal(ew_raster_set_material(&raster, &material), EW_OK);
-    ew_geometry_init(&geometry, &raster);
-    assert_int_equal(ew_transform_set(&geometry.transform, &projection, &model_view, &viewport), EW_OK);
-    ew_transform_vertices(&geometry.transform, scene.vertices, scene.vertex_count, screen);
-    measure_begin(&target, &eye, BACKGROUND);
-    const ew_mesh mesh = { scene.vertices, screen, NULL, scene.indices, scene.index_count, scene.uv_fraction_bits };
-    assert_int_equal(measure_mesh(&geometry, exact, &mesh), 0);
+    const ew_target target = { .colour = colour, .depth = depth, .width = STANDARD_WIDTH, .height = STANDARD_HEIGHT,
+                               .stride = STANDARD_WIDTH };
     measures m;
-    measure_end(&m, 0.125);
+    assert_int_equal(measure_standard(name, rung, tolerance, &target, BACKGROUND, &m), 0);
     return m;
 }
 

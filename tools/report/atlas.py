@@ -65,7 +65,7 @@ def draw(folder, rows):
     """Charts of err_px (wrong pixels for separations of depth) against x; their names."""
     os.makedirs(folder, exist_ok=True)
     script, names, axes = ["set grid lc rgb '#e4e4e4'", "set key below samplen 1.5 font ',10'", "set bmargin 6.5", "set logscale xy",
-                           "set format '%g'", "set border 3", "set tics nomirror", "set termoption noenhanced"], [], {}
+                           "set format '%g'", "set border 3", "set tics nomirror"], [], {}
     for (axis, method), own in groups(rows).items():
         axes.setdefault(axis, {})[method] = own
     for axis, methods in axes.items():
@@ -85,10 +85,10 @@ def draw(folder, rows):
         name = f"stability-{axis}"
         script.append("unset arrow")
         script += [f"set arrow from {x:.6g}, graph 0 to {x:.6g}, graph 1 nohead dt 2 lc rgb '{colour}'" for x, colour in predicted]
-        script += [f"set title '{axis}'", f"set xlabel '{axis}'",
-                   f"set ylabel '{'pixels lost (0.1: none)' if depth else 'worst displacement, px (1/4096 and below at the bottom)'}'"]
-        for terminal, suffix in (("svg size 480,400 dynamic enhanced font 'sans,12' background '#ffffff'", "svg"),
-                                 ("pngcairo size 480,400 enhanced font 'DejaVu Sans,10'", "png")):
+        script += [f"set title '{axis.replace('_', ' ')}'", "set xlabel 'x'",
+                   f"set ylabel '{'pixels lost (0.1: none)' if depth else 'worst displacement, px (below 1/4096 at it)'}'"]
+        for terminal, suffix in (("svg size 480,400 dynamic noenhanced font 'sans,12' background '#ffffff'", "svg"),
+                                 ("pngcairo size 480,400 noenhanced font 'DejaVu Sans,10'", "png")):
             script += [f"set terminal {terminal}", f"set output '{name}.{suffix}'", "plot " + ", ".join(plots)]
         names.append(name)
     with open(os.path.join(folder, "stability.gp"), "w", encoding="utf-8") as f:

@@ -104,15 +104,14 @@ def panel(script, name, title, rows, marks, speed, error, bits):
                 plots.append(f"{data} every 2::{first} using 1:2:3 with labels left offset {offset} font ',9' tc rgb '{colour}' notitle")
     script.lines += [f"set title '{title}'", f"set xlabel '{ERRORS[error][1]}'", f"set ylabel '{SPEEDS[speed][1]}'",
                      *axes(shown, FLOOR[error])]
-    for terminal, suffix in ((f"svg size {WIDTH},{HEIGHT} dynamic enhanced font 'sans,12' background '#ffffff'", "svg"),
-                             (f"pngcairo size {WIDTH},{HEIGHT} enhanced font 'DejaVu Sans,10'", "png")):
+    for terminal, suffix in ((f"svg size {WIDTH},{HEIGHT} dynamic noenhanced font 'sans,12' background '#ffffff'", "svg"),
+                             (f"pngcairo size {WIDTH},{HEIGHT} noenhanced font 'DejaVu Sans,10'", "png")):
         script.lines += [f"set terminal {terminal}", f"set output '{name}.{suffix}'", "plot " + ", ".join(plots)]
     return True
 
 
 HEAD = ["set logscale xy", "set grid lc rgb '#e4e4e4'", "set format x '%g'", "set format y '%g'",
-        "set key below samplen 1.5 font ',10'", "set bmargin 6.5", "set border 3", "set tics nomirror",
-        "set termoption noenhanced"]
+        "set key below samplen 1.5 font ',10'", "set bmargin 6.5", "set border 3", "set tics nomirror"]
 
 
 def draw(folder, rows, reference_file, bits, report_progress):

@@ -3,7 +3,7 @@
 REPORT_BITS ?= 4 5 6 7 8 9
 REPORT := build/report
 JUDGE_SRCS := tools/report/judge.c $(addprefix host_tests/,accuracy/measure.c accuracy/scene_measure.c \
-  reference/referee.c reference/scenes.c) $(addprefix tools/common/,image.c player.c whole_file.c)
+  accuracy/standard_measure.c   reference/referee.c reference/scenes.c) $(addprefix tools/common/,image.c player.c whole_file.c)
 $(C)/%/judge: $(JUDGE_SRCS) $(CORE_SRCS) tools/cycles/cases.h \
   $(wildcard include/edgewalk/*.h host_tests/*/*.h tools/common/*.h fixed/*.inc src/*/*.h)
 	@mkdir -p $(@D); echo "CC $@"
@@ -15,7 +15,7 @@ report:  ## speed against accuracy: tables, charts and a page in build/report (R
 .PHONY: report report-run
 
 # The walks run under the sanitizers: no axis may end in a write outside or undefined behaviour.
-STABILITY_SRCS := tools/report/stability.c $(filter-out tools/% host_tests/accuracy/scene_measure.c,$(JUDGE_SRCS)) \
+STABILITY_SRCS := tools/report/stability.c $(filter-out tools/% host_tests/accuracy/scene_measure.c host_tests/accuracy/standard_measure.c,$(JUDGE_SRCS)) \
   $(filter-out src/scene/% src/display/%,$(CORE_SRCS))
 $(C)/%/stability: $(STABILITY_SRCS) tools/cycles/cases.h $(wildcard include/edgewalk/*.h host_tests/*/*.h fixed/*.inc src/*/*.h)
 	@mkdir -p $(@D); echo "CC $@"

@@ -10,7 +10,7 @@
 #include <string.h>
 
 #include "../../host_tests/accuracy/scene_measure.h"
-#include "../../host_tests/reference/scenes.h"
+#include "../../host_tests/accuracy/standard_measure.h"
 #include "../common/image.h"
 #include "../common/player.h"
 #include "../cycles/cases.h"
@@ -27,39 +27,8 @@ typedef struct judged_scene {
     ew_player *player; /* NULL: the standard scene of that letter */
 } judged_scene;
 
-static uint16_t texels[256 * 256], colour[PIXELS], depth[PIXELS];
+static uint16_t colour[PIXELS], depth[PIXELS];
 static const ew_target target = { .colour = colour, .depth = depth, .width = W, .height = H, .stride = W };
-
-/* As host_tests/unit/test_accuracy.c, and the bench. */
-static int draw_standard(char name, ew_rung rung, uint16_t tolerance, measures *m)
-{
-    static standard_scene scene;
-    static ew_screen_vertex screen[33 * 33];
-    const ew_texture texture = { .texels = texels, .width = 256, .height = 256 };
-    const ew_material material = { .texture = &texture, .tolerance = tolerance, .rung = (uint8_t)rung };
-    const ew_viewport viewport = { 0, -40, 320, 320 };
-    const ref_camera eye = { 1, 1, 0.25, 0, -40, 320, 320 };
-    const ew_projection projection = { 65536, 65536, { 1 << 29, -1 } };
-    ew_raster raster;
-    ew_geometry geometry;
-    ew_mat34 model_view;
-    double exact[3][4];
-
-    standard_scene_init(&scene, name);
-    standard_model_view(&model_view, exact);
-    int error = ew_raster_init(&raster, &target);
-    ew_raster_clear(&raster, BACKGROUND);
-    if (!error) error = ew_raster_set_material(&raster, &material);
-    ew_geometry_init(&geometry, &raster);
-    if (!error) error = ew_transform_set(&geometry.transform, &projection, &model_view, &viewport);
-    if (error) return error;
-    ew_transform_vertices(&geometry.transform, scene.vertices, scene.vertex_count, screen);
-    measure_begin(&target, &eye, BACKGROUND);
-    const ew_mesh mesh = { scene.vertices, screen, NULL, scene.indices, scene.index_count, scene.uv_fraction_bits };
-    error = measure_mesh(&geometry, exact, &mesh);
-    measure_end(m, 0.125);
-    return error;
-}
 
 static int draw(const judged_scene *s, ew_rung rung, uint16_t tolerance, measures *m)
 {
@@ -69,7 +38,7 @@ static int draw(const judged_scene *s, ew_rung rung, uint16_t tolerance, measure
         ew_scene_get_camera(ew_player_scene(s->player), &camera);
         error = measure_scene(ew_player_scene(s->player), &camera, BENCH_TIME_MS, &target, BACKGROUND, tolerance, rung, m);
     } else {
-        error = draw_standard(s->name[0], rung, tolerance, m);
+        error = measure_standard(s->name[0], rung, tolerance, &target, BACKGROUND, m);
     }
     if (error) fprintf(stderr, "%s: %s: cannot draw the scene: %s\n", tool, s->name, ew_error_text(error));
     return error;
@@ -175,7 +144,6 @@ int main(int argc, char **argv)
     static judged_scene scenes[MOST];
     const char *folder = argc > 2 && strcmp(argv[1], "--pictures") == 0 ? argv[2] : NULL;
     int count = 0, failed = 0;
-    standard_texture(texels);
     for (char name = 'A'; name <= 'E'; name++) scenes[count++].name[0] = name;
     for (int i = folder ? 3 : 1; i < argc; i++) {
         const char *path = strchr(argv[i], '=');
