@@ -19,7 +19,7 @@ $(BIN)/ew-accuracy: $(addprefix $(B)/host_tests/accuracy/,accuracy.o scene_measu
 # ---- unit tests ----
 T := $(B)/tests
 UNIT := $(B)/host_tests/unit
-UNIT_TESTS := $(addprefix $(T)/test_,fixed recip quaternion light raster fill attributes geometry accuracy scene display display_faults stream readme)
+UNIT_TESTS := $(addprefix $(T)/test_,fixed recip quaternion light raster fill attributes clip geometry accuracy scene display display_faults stream readme)
 
 LINK_TEST = @mkdir -p $(@D); echo "LINK $@"; $(CC) $(HOST_CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka -lm
 $(addprefix $(T)/test_,fixed recip quaternion light scene display display_faults): $(T)/test_%: $(UNIT)/test_%.o $(UNIT)/unit.o $(LIB)
@@ -30,7 +30,7 @@ $(T)/test_fill: $(UNIT)/test_fill.o $(UNIT)/unit.o $(B)/host_tests/reference/ref
 	$(LINK_TEST)
 $(T)/test_geometry $(T)/test_accuracy: $(T)/test_%: $(UNIT)/test_%.o $(UNIT)/unit.o $(REFEREE_OBJS) $(TRACE_OBJS)
 	$(LINK_TEST)
-$(T)/test_attributes: $(UNIT)/test_attributes.o $(UNIT)/unit.o $(TRACE_OBJS)
+$(T)/test_attributes $(T)/test_clip: $(T)/test_%: $(UNIT)/test_%.o $(UNIT)/unit.o $(TRACE_OBJS)
 	$(LINK_TEST)
 $(T)/test_stream: $(UNIT)/test_stream.o $(UNIT)/unit.o \
   $(addprefix $(B)/tools/stream/,link.o panel_lines.o sender.o sim.o sim_panel.o) $(LIB)

@@ -377,9 +377,18 @@ static void both_ways_agree(void **state)
         double exact[3][4];
         ew_viewport viewport = { (int16_t)(int)uniform(-200, 200), (int16_t)(int)uniform(-200, 200),
                                  (uint16_t)pow(2, uniform(0, 12)), (uint16_t)pow(2, uniform(0, 12)) };
+        if (k & 2) viewport.x = viewport.y = 0; /* a few pixels, and nothing beside them */
         double size = pow(2, uniform(-8, 8)), distance = size * pow(2, uniform(-3, 5));
         ew_block n = block(distance * pow(2, uniform(-16, 1)));
         random_model_view(&model_view, exact, size, distance);
+        if (k & 1) { /* around the eye and not turned: vertices close to it can be in the middle of the picture */
+            int32_t m = (1 << 29) + (int32_t)(test_random() >> 3);
+            for (int i = 0; i < 3; i++) {
+                for (int j = 0; j < 4; j++) model_view.row[i].m[j] = i == j ? m : j == 3 ? (int32_t)(test_random() >> 12) : 0;
+                model_view.row[i].e = model_view.row[i].e_last = 0;
+            }
+            n = block(pow(2, uniform(-14, -9)));
+        }
         const ew_projection projection = { (int32_t)(65536 * uniform(0.3, 5)), (int32_t)(65536 * uniform(0.3, 5)), n };
         ew_transform t, careful;
         assert_int_equal(ew_transform_set(&t, &projection, &model_view, &viewport), EW_OK);
@@ -388,6 +397,7 @@ static void both_ways_agree(void **state)
         for (int i = 0; i < 50; i++) {
             ew_vertex16 v = { (int16_t)test_random(), (int16_t)test_random(), (int16_t)test_random(), 0, 0 };
             ew_screen_vertex a, b;
+            if (k & 1) v.z = (int16_t)-(int)(test_random() % 4000), v.x = (int16_t)(v.x * v.z / 65536), v.y = (int16_t)(v.y * v.z / 65536);
             ew_transform_vertices(&t, &v, 1, &a);
             ew_transform_vertices(&careful, &v, 1, &b);
             all++;
@@ -403,7 +413,7 @@ static void both_ways_agree(void **state)
             double size_y = fmax(abs(viewport.y), abs(viewport.y + viewport.height)) * 4096;
             assert_true(abs(a.x - b.x) <= 1 + 2 * fmax(1, abs(b.x) / size_x));
             assert_true(abs(a.y - b.y) <= 1 + 2 * fmax(1, abs(b.y) / size_y));
-            assert_true(fabs((double)a.w - b.w) <= 2 + b.w * ldexp(1, -20));
+            assert_true(fabs((double)a.w - b.w) <= 1 + b.w * ldexp(1.5, -20)); /* w is 2^20 units and more */
             if (a.x == b.x && a.y == b.y) assert_int_equal(a.outcode, b.outcode);
         }
     }
@@ -429,6 +439,111 @@ static void ordinary_scenes_take_the_quick_way(void **state)
         test_context("vertex %u", i);
         assert_true(went_quickly(&t, &scene.vertices[i]));
     }
+}
+
+/* A matrix of any mantissas, sizes far apart; at times the third row fills its range, and the corner
+ * of the box where all three are -32768 is the farthest. */
+static void random_rows(ew_mat34 *fixed, double exact[3][4], int spread)
+{
+    for (int i = 0; i < 3; i++) {
+        int full = i == 2 && test_random() % 4 == 0;
+        ew_row *row = &fixed->row[i];
+        row->e = (int16_t)((int)(test_random() % (unsigned)(2 * spread + 1)) - spread);
+        row->e_last = (int16_t)(row->e - (int)(test_random() % 3));
+        for (int j = 0; j < 4; j++) {
+            int32_t m = full || test_random() & 1 ? (1 << 30) - 1 : (1 << 29) + (int32_t)(test_random() >> 3);
+            row->m[j] = full ? (j < 3 ? m : -m) : test_random() & 1 ? m : -m;
+        }
+        if (full) row->e_last = row->e;
+        for (int j = 0; j < 4; j++) exact[i][j] = value(row->m[j], j < 3 ? row->e : row->e_last);
+    }
+}
+
+static int16_t extreme(void) { return (int16_t)(test_random() & 1 ? (test_random() & 1 ? 32767 : -32768) : (int)test_random()); }
+
+/* Near plane and guard band where x, y and w differ in size by up to 2^20 and their sums by the
+ * vertices' extremes: the clipper's one unit has to hold them all. */
+static void units_of_every_size(void **state)
+{
+    (void)state;
+    long fragments = 0, truth = 0, clipped = 0;
+    for (int k = 0; k < 1500; k++) {
+        ew_vertex16 v[3];
+        ew_screen_vertex screen[3];
+        const uint16_t index[3] = { 0, 1, 2 };
+        const ew_mesh mesh = { v, screen, NULL, index, 3, 8 };
+        ew_mat34 model_view;
+        double exact[3][4];
+        measures m;
+        random_rows(&model_view, exact, 10);
+        double largest = fabs(exact[2][0]) + fabs(exact[2][1]) + fabs(exact[2][2]) + fabs(exact[2][3]);
+        ew_block n = block(largest * pow(2, uniform(-9, -1)));
+        int32_t fx = (int32_t)(65536 * pow(2, uniform(-6, 9))), fy = (int32_t)(65536 * pow(2, uniform(-6, 9)));
+        const ew_viewport viewport = { 0, 0, W, H };
+        const ref_camera eye = { fx / 65536.0, fy / 65536.0, value(n.m, n.e), 0, 0, W, H };
+        const ew_material material = { .rung = EW_RUNG_CONSTANT, .colour = 1, .flags = EW_DOUBLE_SIDED };
+        assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
+        assert_int_equal(ew_raster_set_material(&raster, &material), EW_OK);
+        ew_raster_clear(&raster, 0);
+        ew_geometry_init(&geometry, &raster);
+        const ew_projection projection = { fx, fy, n };
+        if (ew_transform_set(&geometry.transform, &projection, &model_view, &viewport) != EW_OK) continue;
+        for (int i = 0; i < 3; i++) v[i] = (ew_vertex16){ extreme(), extreme(), extreme(), 0, 0 };
+        if (k & 2) v[0].x = v[0].y = v[0].z = -32768;
+        ew_transform_vertices(&geometry.transform, v, 3, screen);
+        int any = screen[0].outcode | screen[1].outcode | screen[2].outcode;
+        measure_begin(&target, &eye, 0);
+        assert_int_equal(measure_mesh(&geometry, exact, &mesh), 0);
+        measure_end(&m, 0.125);
+        test_context("case %d: %ld fragments, %ld wrong, %ld of the truth, depth %.3f, code %d", k, m.fragments, m.wrong_px,
+                     m.wrong_truth_px, m.depth_off, any);
+        assert_int_equal(m.wrong_px, 0);
+        assert_true(m.depth_off <= 1);
+        if (any & (EW_OUT_NEAR | EW_OUT_GUARD)) clipped++;
+        fragments += m.fragments, truth += m.wrong_truth_px;
+    }
+    test_context("%ld fragments, %ld pixels against the unsnapped outline, %ld triangles clipped", fragments, truth, clipped);
+    assert_true(fragments > 200000 && clipped > 500);
+    assert_true(truth * 1000 < fragments);
+}
+
+/* A near distance that is a vertex's own, and a little more and less: the quick way leaves to
+ * 64 bits what it cannot decide, also where the near distance is next to a power of two. */
+static void the_near_plane_is_decided_in_64_bits(void **state)
+{
+    (void)state;
+    long hidden = 0, seen = 0;
+    for (int k = 0; k < 300000; k++) {
+        ew_mat34 model_view;
+        double exact[3][4];
+        ew_homogeneous_vertex h;
+        ew_transform t;
+        ew_screen_vertex s;
+        const ew_viewport viewport = { 0, 0, W, H };
+        ew_projection projection = { 65536, 87381, { 1 << 29, 0 } };
+        const ew_vertex16 v = { extreme(), extreme(), extreme(), 0, 0 };
+        random_rows(&model_view, exact, 2);
+        if (k & 1) { /* distances next to a power of two */
+            for (int j = 0; j < 4; j++) model_view.row[2].m[j] = j == 2 ? -(1 << 30) : j == 3 ? (int)(test_random() % 9) - 4 : 0;
+            model_view.row[2].e_last = model_view.row[2].e;
+        }
+        assert_int_equal(ew_transform_set(&t, &projection, &model_view, &viewport), EW_OK);
+        ew_homogeneous(&h, &t, &v);
+        if (h.w < (int64_t)1 << 32) continue;
+        int down = 34 - ew_clz64((uint64_t)h.w); /* its upper 30 bits */
+        int64_t m = (down > 0 ? h.w >> down : h.w << -down) + (int)(test_random() % 9) - 4;
+        if (m < 1 << 29 || m >= 1 << 30) continue;
+        projection.near_z.m = (int32_t)m;
+        projection.near_z.e = (int16_t)(t.w.e - 15 + down);
+        assert_int_equal(ew_transform_set(&t, &projection, &model_view, &viewport), EW_OK);
+        ew_transform_vertices(&t, &v, 1, &s);
+        test_context("case %d: w %lld, near %lld, code %d", k, (long long)h.w, (long long)t.near_w, s.outcode);
+        assert_int_equal((s.outcode & EW_OUT_NEAR) != 0, h.w < t.near_w);
+        if (s.outcode & EW_OUT_NEAR) hidden++;
+        else seen++;
+    }
+    test_context("%ld hidden, %ld seen", hidden, seen);
+    assert_true(hidden > 10000 && seen > 10000);
 }
 
 static void arguments_are_checked(void **state)
@@ -466,6 +581,8 @@ int main(void)
         TEST(cut_edges_stay_shut),
         TEST(a_corner_at_the_guard_band_keeps_its_place),
         TEST(guard_band_drops_nothing),
+        TEST(units_of_every_size),
+        TEST(the_near_plane_is_decided_in_64_bits),
         TEST(arguments_are_checked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

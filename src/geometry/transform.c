@@ -98,13 +98,15 @@ static void choose_rows32(ew_transform *t, const ew_viewport *viewport)
         return;
     }
     /* Sums are off by at most 1.5 units. Those of x and of w together move a position inside the
-     * viewport by at most 3 2^exponent / w px: kept below an eighth of 2^-8 px. */
+     * viewport by at most 3 2^exponent / w px: kept below an eighth of 2^-8 px. And from 2^20 on,
+     * near/w <= 1/2 is off by 2^-20.4 of 1 at most, 1/20 of depth's unit. */
     int32_t least_shift = t->shift_x < t->shift_y ? t->shift_x : t->shift_y;
     int32_t precise = (int32_t)3 << (15 - least_shift + 11);
     t->near_shift = (int8_t)(near_zeros - 3);
     t->w_hidden = (int32_t)(t->near_m >> near_zeros) - 3;
     t->w_safe = ((int32_t)1 << (32 - near_zeros)) + 3;
     if (t->w_safe < precise) t->w_safe = precise;
+    if (t->w_safe < (int32_t)1 << 20) t->w_safe = (int32_t)1 << 20;
 }
 
 int ew_transform_set(ew_transform *transform, const ew_projection *projection, const ew_mat34 *model_view,
