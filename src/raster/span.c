@@ -390,7 +390,7 @@ EW_ALWAYS_INLINE int is_plain(const ew_triangle *t, uint32_t w, uint32_t dw, int
 EW_ALWAYS_INLINE void piece(const ew_raster *raster, const ew_triangle *t, linear *l, int32_t x, int32_t y, size_t offset,
                          int32_t n)
 {
-    int down = t->w_lead + l->align;
+    int down = smaller(t->w_lead + l->align, 31);
     uint32_t w = depth_of(l->w, down), dw = depth_step(l->dw, down);
     if (is_plain(t, w, dw, n)) {
         packing k;
