@@ -109,7 +109,7 @@ EW_ALWAYS_INLINE int one_run_suffices(const ew_triangle *t, uint32_t w, uint32_t
 /* How a run's u and v become one texel number (t->plain says where this will do: depth inside
  * its range, sizes of 2 at least, 2^16 texels at most). u and v share 64 bits: from the top u's
  * texel and fraction, v's texel, v's fraction. One addition steps both, one rotation brings
- * the texel number together; what v's texel carries goes into u's fraction, 512 times 2^-16
+ * the texel number together; what v's texel carries goes into u's fraction, 256 times 2^-16
  * texel at most. */
 typedef struct packing {
     ew_pixel_loop loop;
@@ -448,13 +448,13 @@ static int alignment(uint64_t w, uint64_t end, uint32_t *least)
     return up;
 }
 
-/* Whether 32-bit steps keep attributes within 1/128 texel over n pixels: n 2^bits <= 4 w' at
- * both ends; affine, where w' does not matter: n 2^bits <= 2^33 (docs/error-bound.md). */
+/* Whether 32-bit steps keep attributes within 1/256 texel over n pixels: n 2^bits <= 2 w' at
+ * both ends; affine, where w' does not matter: n 2^bits <= 2^32, 1/128 texel (docs/error-bound.md). */
 EW_ALWAYS_INLINE int steps_suffice(const ew_triangle *t, uint32_t w, uint32_t last, int32_t n)
 {
     int32_t least = smaller((int32_t)w, (int32_t)last); /* rounding may take it below 0 */
     if (t->rung == EW_RUNG_AFFINE) least = INT32_MAX;
-    return n <= EW_LONGEST_RUN && n * ((int32_t)1 << (t->uv_bits - EW_BITS_LEAST)) <= EW_ASR(least, EW_BITS_LEAST - 2); /* 2^9 2^8 */
+    return n <= EW_LONGEST_RUN && n * ((int32_t)1 << (t->uv_bits - EW_BITS_LEAST)) <= EW_ASR(least, EW_BITS_LEAST - 1); /* 2^8 2^8 */
 }
 
 /* The same for wide triangles, unaligned. */
