@@ -260,25 +260,14 @@ EW_NOINLINE void piece_of_texture(packing *k, const ew_triangle *t, linear *l, i
 
 /* ---- everything else ---- */
 
-/* A shade inside its range at both ends is inside everywhere: a tangent may leave it. */
-static int32_t clamp_shade(int32_t s)
-{
-    const int32_t all = (int32_t)1 << 24;
-    return s < 0 ? 0 : s > all ? all : s;
-}
-
-static void shade_run(ew_run *run, const ew_triangle *t, const attribute_run *from, int32_t n)
+/* A tangent may leave a shade's range: ew_fill_any clamps. */
+static void shade_run(ew_run *run, const ew_triangle *t, const attribute_run *from)
 {
     enum { DOWN = EW_FRACTION(EW_SHADE_BITS) - 16 };
     for (int i = 0; i < 3; i++) {
         /* rounds to nearest where fill.c drops the fraction */
-        int32_t origin = t->shade_origin[i] * 16 + 32768, step = EW_ASR((int32_t)from->dshade[i], DOWN);
-        int32_t start = origin + EW_ASR((int32_t)from->shade[i], DOWN), end = start + step * (n - 1);
-        run->shade[i] = clamp_shade(start);
-        run->dshade[i] = step;
-        if ((start != run->shade[i] || end != clamp_shade(end)) && n > 1) {
-            run->dshade[i] = (clamp_shade(end) - run->shade[i]) / (n - 1);
-        }
+        run->shade[i] = t->shade_origin[i] * 16 + 32768 + EW_ASR((int32_t)from->shade[i], DOWN);
+        run->dshade[i] = EW_ASR((int32_t)from->dshade[i], DOWN);
     }
 }
 
@@ -302,7 +291,7 @@ static void fill_any(const ew_raster *raster, const ew_triangle *t, position *at
     run.v = ((uint64_t)(int64_t)t->v_origin << 20) + texels_of(t, from->v);
     run.du = texels_of(t, from->du), run.dv = texels_of(t, from->dv);
     run.u_down = texels_of(t, from->u_down), run.v_down = texels_of(t, from->v_down);
-    if (EW_WITH_SHADING && raster->material.flags & EW_SHADED) shade_run(&run, t, from, n);
+    if (EW_WITH_SHADING && raster->material.flags & EW_SHADED) shade_run(&run, t, from);
     ew_fill_any(raster, &run, n);
     at->x = (uint16_t)(at->x + n);
     at->w += at->dw * (uint32_t)n;
