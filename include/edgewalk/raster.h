@@ -22,6 +22,7 @@
 
 #include "error.h"
 #include "fixed.h"
+#include "raster_work.h"
 
 enum {
     EW_TARGET_MAX = 4096,   /* pixels across and down                                      */
@@ -168,6 +169,7 @@ typedef struct ew_raster {
     uint8_t log2_width, log2_height; /* of the texture, rounded up                         */
     uint16_t shortest_run; /* px: below that a pixel each is cheaper (ew_raster_set_cost)  */
     uint8_t plain; /* 1: depth tested and written, RGB565 to RGB565, nearest, repeated, nothing else */
+    ew_raster_work work; /* the layer's own; no field of it means anything between calls   */
 } ew_raster;
 
 /* Copies *target; the scissor is the whole of it, the material black and constant, and

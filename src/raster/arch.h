@@ -4,7 +4,7 @@
 #ifndef EW_RASTER_ARCH_H
 #define EW_RASTER_ARCH_H
 
-#include <stdint.h>
+#include "edgewalk/raster_work.h"
 
 #if defined(__GNUC__)
 #define EW_ALWAYS_INLINE static inline __attribute__((always_inline))
@@ -26,12 +26,6 @@
  *
  * GCC needs 14 to 17 instructions for a pixel on Thumb-2 and 28 on ARMv6-M, spilling and
  * moving around the carry; 12 and 19 are enough, and one more a pixel for the loop. */
-typedef struct ew_pixel_loop {
-    uint32_t w, dw, high, low, dhigh, dlow;
-    const uint16_t *texels;
-    uint32_t mask, turn;
-    const uint16_t *end, *rest;
-} ew_pixel_loop;
 
 #if defined(__GNUC__) && defined(__thumb__) && defined(__OPTIMIZE__) && !defined(EW_PORTABLE)
 #define EW_HAS_PIXEL_LOOP 1

@@ -13,19 +13,10 @@
 #ifndef EW_RASTER_EDGE_H
 #define EW_RASTER_EDGE_H
 
-#include "edgewalk/fixed.h"
+#include "edgewalk/raster_work.h"
 
 enum { EW_ONE = 1 << EW_SUBPIXEL_BITS, EW_HALF = EW_ONE / 2 };
 
-/* Positions are within +-2^(17 + S), S = EW_SUBPIXEL_BITS <= 8, so differences are
- * within 2^26. */
-typedef struct ew_edge {
-    int32_t x;         /* first pixel at or right of the edge on the current row           */
-    int32_t step;      /* floor(dx / dy): what x grows by on each row, or by one more ...  */
-    int32_t remainder; /* ... whenever this, from -dy to -1, counts up to zero             */
-    int32_t rise;      /* dx - step dy, 0 <= rise < dy                                     */
-    int32_t dy;
-} ew_edge;
 
 /* First row whose centre is at or below y. */
 static inline int32_t ew_row_at(ew_snapped y) { return EW_ASR(y + EW_HALF - 1, EW_SUBPIXEL_BITS); }

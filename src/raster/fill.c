@@ -103,30 +103,30 @@ EW_NOINLINE void fog(const ew_raster *raster, const ew_run *run, ew_piece *piece
     }
 }
 
-static void fill_piece(const ew_raster *raster, const ew_run *run, int n)
+static void fill_piece(ew_raster *raster, const ew_run *run, int n)
 {
     const int flags = raster->material.flags;
-    ew_piece piece;
-    piece.x = run->x;
-    piece.y = run->y;
-    piece.n = n;
-    piece.live = (uint8_t)(0xFFu >> (EW_PIECE - n));
+    ew_piece *piece = &raster->work.now.span.fill.any.piece;
+    piece->x = run->x;
+    piece->y = run->y;
+    piece->n = n;
+    piece->live = (uint8_t)(0xFFu >> (EW_PIECE - n));
     if (raster->target.depth && !(flags & EW_NO_DEPTH_TEST)) {
-        test_depth(raster, run, &piece);
-        if (!piece.live) return;
+        test_depth(raster, run, piece);
+        if (!piece->live) return;
     }
     if (raster->texture.texels) {
-        ew_texture_sample(raster, run, &piece);
+        ew_texture_sample(raster, run, piece);
     } else {
-        paint(raster, &piece);
+        paint(raster, piece);
     }
-    if (raster->target.depth && !(flags & EW_NO_DEPTH_WRITE)) write_depth(raster, run, &piece);
-    if (EW_WITH_SHADING && (flags & EW_SHADED)) shade(run, &piece);
-    if (EW_WITH_FOG && (flags & EW_FOG)) fog(raster, run, &piece);
-    ew_target_put(&raster->target, &piece, raster->material.blend);
+    if (raster->target.depth && !(flags & EW_NO_DEPTH_WRITE)) write_depth(raster, run, piece);
+    if (EW_WITH_SHADING && (flags & EW_SHADED)) shade(run, piece);
+    if (EW_WITH_FOG && (flags & EW_FOG)) fog(raster, run, piece);
+    ew_target_put(&raster->target, piece, raster->material.blend);
 }
 
-void ew_fill_any(const ew_raster *raster, ew_run *run, int32_t n)
+void ew_fill_any(ew_raster *raster, ew_run *run, int32_t n)
 {
     for (;;) {
         const int count = n < EW_PIECE ? (int)n : EW_PIECE;

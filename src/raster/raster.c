@@ -110,15 +110,15 @@ void ew_raster_clear(ew_raster *raster, uint16_t rgb565)
     const ew_target *target = &raster->target;
     /* dither leaves RGB565 alone */
     const int as_it_is = !EW_WITH_TARGET_FORMATS || target->format == EW_TARGET_RGB565;
-    ew_piece piece;
-    piece.live = 0xFF;
-    for (int i = 0; i < EW_PIECE; i++) ew_decode_565(piece.colour[i], rgb565, ew_wide(target));
+    ew_piece *piece = &raster->work.now.span.fill.any.piece;
+    piece->live = 0xFF;
+    for (int i = 0; i < EW_PIECE; i++) ew_decode_565(piece->colour[i], rgb565, ew_wide(target));
     for (uint16_t y = r->y0; y < r->y1; y++) {
         const size_t row = (size_t)y * target->stride;
         if (!as_it_is) {
-            piece.x = r->x0;
-            piece.y = y;
-            ew_target_fill(target, &piece, r->x1);
+            piece->x = r->x0;
+            piece->y = y;
+            ew_target_fill(target, piece, r->x1);
         }
         for (uint16_t x = r->x0; x < r->x1; x++) {
             if (as_it_is) ((uint16_t *)target->colour)[row + x] = rgb565;

@@ -14,41 +14,46 @@
  */
 #include "triangle.h"
 
+#include "arch.h"
+
 static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
 static uint32_t smaller(uint32_t a, uint32_t b) { return a < b ? a : b; }
 
 /* ---- corners ---- */
 
-/* Differences from corner 0, in one place for both kinds of set-up. */
-typedef struct basis {
-    int32_t dx1, dy1, dx2, dy2; /* q20.12, |d| <= 2^30                                      */
-    int64_t area;               /* dx1 dy2 - dx2 dy1, |area| <= 2^61                        */
-    uint32_t reach;             /* the largest |d|                                          */
-    int32_t to_x, to_y;         /* from corner 0 to the pixel where planes stand, q20.12    */
-} basis;
 
-static void basis_init(basis *b, const int32_t x[3], const int32_t y[3], int32_t column, int32_t row)
+/* From the differences, with corner 0 at (x, y). */
+EW_NOINLINE void basis_init(ew_basis *b, int32_t x, int32_t y, const ew_corners *c)
 {
-    b->dx1 = x[1] - x[0], b->dy1 = y[1] - y[0];
-    b->dx2 = x[2] - x[0], b->dy2 = y[2] - y[0];
     b->area = ew_mul_s32(b->dx1, b->dy2) - ew_mul_s32(b->dx2, b->dy1);
     b->reach = larger(larger(ew_abs32(b->dx1), ew_abs32(b->dx2)), larger(ew_abs32(b->dy1), ew_abs32(b->dy2)));
-    b->to_x = column * 4096 + 2048 - x[0];
-    b->to_y = row * 4096 + 2048 - y[0];
+    b->to_x = c->from * 4096 + 2048 - x;
+    b->to_y = c->first * 4096 + 2048 - y;
+}
+
+static void basis_of_vertices(ew_basis *b, const ew_corners *c)
+{
+    const int32_t x = c->v[0]->x, y = c->v[0]->y;
+    b->dx1 = c->v[1]->x - x, b->dy1 = c->v[1]->y - y;
+    b->dx2 = c->v[2]->x - x, b->dy2 = c->v[2]->y - y;
+    basis_init(b, x, y, c);
+}
+
+static void basis_of_snapped(ew_basis *b, const ew_corners *c)
+{
+    const int32_t x = ew_q20_12_from_snapped(c->x[0]), y = ew_q20_12_from_snapped(c->y[0]);
+    b->dx1 = ew_q20_12_from_snapped(c->x[1]) - x, b->dy1 = ew_q20_12_from_snapped(c->y[1]) - y;
+    b->dx2 = ew_q20_12_from_snapped(c->x[2]) - x, b->dy2 = ew_q20_12_from_snapped(c->y[2]) - y;
+    basis_init(b, x, y, c);
 }
 
 /* ---- narrow triangles ---- */
 
-/* Gradients of the weights of corners 1 and 2, per q20.12 unit times 2^shift / 4096. */
-typedef struct weights {
-    int32_t x1, x2, y1, y2; /* |.| <= 2^30 */
-    int shift;              /* 26 to 38    */
-} weights;
 
 /* Whether 32 bits will do. With L the box and h the height of the triangle: L below 256 px,
  * h at least L/8 and 1/8 px; 1/z within a factor of four; and what steps of 32 bits lose over
  * all of its rows and columns is at most 1/256 texel (docs/error-bound.md). */
-static int is_narrow(const basis *b, const ew_corners *c, uint32_t w_min, uint32_t w_max, int bits)
+static int is_narrow(const ew_basis *b, const ew_corners *c, uint32_t w_min, uint32_t w_max, int bits)
 {
     uint32_t steps = (uint32_t)(c->to - c->from) + (uint32_t)(c->end - c->first); /* <= 2^13 */
     return b->reach < UINT32_C(1) << 20 && w_max / 4 <= w_min &&
@@ -57,7 +62,7 @@ static int is_narrow(const basis *b, const ew_corners *c, uint32_t w_min, uint32
            (uint64_t)(3 * steps) << bits <= (uint64_t)w_min << 2; /* 2^15 2^27 */
 }
 
-static void weights_init(weights *g, const basis *b)
+static void weights_init(ew_weights *g, const ew_basis *b)
 {
     uint64_t area = ew_abs64(b->area);
     int zeros = ew_clz64(area);
@@ -73,7 +78,7 @@ static void weights_init(weights *g, const basis *b)
     g->shift = 50 - zeros + up;
 }
 
-static void plane32_init(ew_plane32 *p, const basis *b, const weights *g, uint32_t a0, int32_t d1, int32_t d2)
+static void plane32_init(ew_plane32 *p, const ew_basis *b, const ew_weights *g, uint32_t a0, int32_t d1, int32_t d2)
 {
     /* |d| < 2^31; height 1/8 px at least: gradients stay below 2^35 a pixel */
     int64_t gx = EW_ASR(ew_mul_s32(d1, g->x1) + ew_mul_s32(d2, g->x2), g->shift);
@@ -91,7 +96,7 @@ typedef struct numerators {
 } numerators;
 
 /* d1 and d2 are the quantity's differences from corner 0, |d| < 2^31. */
-static numerators numerators_of(const basis *b, int32_t d1, int32_t d2)
+static numerators numerators_of(const ew_basis *b, int32_t d1, int32_t d2)
 {
     numerators n;
     n.x = ew_mul_s32(d1, b->dy2) - ew_mul_s32(d2, b->dy1);
@@ -102,7 +107,7 @@ static numerators numerators_of(const basis *b, int32_t d1, int32_t d2)
 
 /* Whether the plane, evaluated up to a snap's width (half a subpixel each way) outside of
  * its triangle, stays within `limit` of the corners' values. limit <= 2^30. */
-static int stays_near(const basis *b, const numerators *n, uint32_t limit)
+static int stays_near(const ew_basis *b, const numerators *n, uint32_t limit)
 {
     /* (|nx| + |ny|) snap <= limit area, snap = 2^(11 - S) units of q20.12; both sides are
      * shifted so that the area keeps at most 32 bits, the left side rounded up */
@@ -127,7 +132,7 @@ static uint64_t over_area(int64_t n, uint32_t r, int zeros)
     return ((uint64_t)t << 32 | (uint32_t)low) << -shift;
 }
 
-static void plane64_init(ew_plane64 *p, const basis *b, uint32_t r, int zeros, uint32_t a0, int32_t d1, int32_t d2)
+static void plane64_init(ew_plane64 *p, const ew_basis *b, uint32_t r, int zeros, uint32_t a0, int32_t d1, int32_t d2)
 {
     const numerators n = numerators_of(b, d1, d2);
     uint64_t gx = over_area(n.x, r, zeros), gy = over_area(n.y, r, zeros);
@@ -136,16 +141,10 @@ static void plane64_init(ew_plane64 *p, const basis *b, uint32_t r, int zeros, u
     p->dy = gy << 12;
 }
 
-/* What planes are made of: values of w' and of all attributes at corners 1 and 2, less those
- * at corner 0. */
-typedef struct differences {
-    int32_t d[EW_PLANES][2];
-} differences;
 
 /* Where the finer positions' planes could leave the values of the corners too far, those of
  * the snapped ones are taken instead, which are never evaluated outside. */
-static void wide_planes(ew_triangle *t, basis *b, const ew_corners *c, const differences *of, uint32_t w0, uint32_t w_min,
-                        int32_t column)
+static void wide_planes(ew_triangle *t, ew_basis *b, const ew_corners *c, const ew_differences *of, uint32_t w0, uint32_t w_min)
 {
     int near_enough = b->area != 0 && (b->area > 0) == c->positive;
     /* as much again as attributes have at the farthest corner */
@@ -154,14 +153,7 @@ static void wide_planes(ew_triangle *t, basis *b, const ew_corners *c, const dif
         const numerators n = numerators_of(b, of->d[i][0], of->d[i][1]);
         near_enough = stays_near(b, &n, i == EW_PLANE_W ? w_min / 4 : attribute_limit);
     }
-    if (!near_enough) {
-        int32_t x[3], y[3];
-        for (int i = 0; i < 3; i++) {
-            x[i] = ew_q20_12_from_snapped(c->x[i]);
-            y[i] = ew_q20_12_from_snapped(c->y[i]);
-        }
-        basis_init(b, x, y, column, c->first);
-    }
+    if (!near_enough) basis_of_snapped(b, c);
     uint64_t area = ew_abs64(b->area);
     int zeros = ew_clz64(area);
     uint32_t r = ew_recip_newton((uint32_t)((area << zeros) >> 32));
@@ -180,16 +172,20 @@ static uint32_t length_of(const ew_raster_vertex *a, const ew_raster_vertex *b)
 }
 
 /* Whether attributes drawn linearly over the whole triangle are displaced by at most the
- * tolerance: max over edges of L |dw| <= 3 t w_min (docs/error-bound.md). */
+ * tolerance: with M = L |dw| of the edges, the largest of them M_1,
+ * max(3 M_1, 2 M_1 + M_2 + M_3) <= 12 t w_min (docs/error-bound.md). */
 static int affine_suffices(const ew_raster_vertex *const v[3], uint32_t tolerance, uint32_t w_min)
 {
-    uint64_t allowed = (uint64_t)w_min * (3u * 256u * tolerance); /* q12: 2^31 2^18 */
+    uint64_t allowed = (uint64_t)w_min * (UINT32_C(3072) * tolerance), sum = 0, most = 0; /* q12: 2^31 2^20 */
     for (int i = 0; i < 3; i++) {
         const ew_raster_vertex *a = v[i], *b = v[i == 2 ? 0 : i + 1];
         uint32_t dw = a->w > b->w ? a->w - b->w : b->w - a->w;
-        if (ew_mul_u32(length_of(a, b), dw) > allowed) return 0; /* <= 2^31 2^31 */
+        uint64_t m = ew_mul_u32(length_of(a, b), dw); /* <= 2^31 2^31 */
+        if (m > allowed) return 0;
+        sum += m;
+        if (m > most) most = m;
     }
-    return 1;
+    return most + (sum > 2 * most ? sum : 2 * most) <= allowed;
 }
 
 /* Whether any point of the triangle is within the tolerance of every other. */
@@ -281,7 +277,7 @@ static uint8_t plainness(const ew_raster *raster, uint32_t w_min, uint32_t w_max
 static int32_t shade_of(uint8_t c) { return ((int32_t)c + (c >> 7)) * 4096; }
 
 /* Attribute planes' values at the corners; the origin of each. */
-static void textured(ew_triangle *t, differences *of, const ew_raster *raster, const ew_corners *c, const uint32_t w[3],
+static void textured(ew_triangle *t, ew_differences *of, const ew_raster *raster, const ew_corners *c, const uint32_t w[3],
                      int affine)
 {
     int u_align = 32 - raster->log2_width, v_align = 32 - raster->log2_height; /* 21 at least */
@@ -299,7 +295,7 @@ static void textured(ew_triangle *t, differences *of, const ew_raster *raster, c
     }
 }
 
-static void shaded(ew_triangle *t, differences *of, const ew_corners *c, const uint32_t w[3], int affine)
+static void shaded(ew_triangle *t, ew_differences *of, const ew_corners *c, const uint32_t w[3], int affine)
 {
     for (int k = 0; k < 3; k++) {
         const ew_colour888 *colour = &c->v[k]->colour;
@@ -311,8 +307,13 @@ static void shaded(ew_triangle *t, differences *of, const ew_corners *c, const u
     }
 }
 
-int ew_setup(ew_triangle *t, const ew_raster *raster, const ew_corners *c)
+int ew_setup(ew_raster *raster)
 {
+    ew_triangle *t = &raster->work.triangle;
+    const ew_corners *c = &raster->work.corners;
+    ew_differences *of = &raster->work.now.setup.differences;
+    ew_basis *b = &raster->work.now.setup.basis;
+    uint32_t *w = raster->work.now.setup.w; /* below 2^31 / 1.5: outside of the corners w may exceed the largest by a quarter */
     const ew_raster_vertex *const *v = c->v;
     const int has_texture = raster->texture.texels != NULL, has_shades = (raster->material.flags & EW_SHADED) != 0;
     uint32_t w_max = larger(larger(v[0]->w, v[1]->w), v[2]->w), w_min = smaller(smaller(v[0]->w, v[1]->w), v[2]->w);
@@ -330,31 +331,26 @@ int ew_setup(ew_triangle *t, const ew_raster *raster, const ew_corners *c)
     t->newton = (uint8_t)(t->rung == EW_RUNG_EXACT || (needs_newton && t->rung != EW_RUNG_TABLE));
 
     t->w_lead = (uint8_t)smaller((uint32_t)ew_clz32(w_max + w_max / 2), 24);
-    uint32_t w[3]; /* below 2^31 / 1.5: outside of the corners w may exceed the largest by a quarter */
     for (int i = 0; i < 3; i++) w[i] = (v[i]->w << t->w_lead) >> 1;
-    differences of;
-    for (int k = 0; k < 2; k++) of.d[EW_PLANE_W][k] = (int32_t)(w[k + 1] - w[0]);
+    for (int k = 0; k < 2; k++) of->d[EW_PLANE_W][k] = (int32_t)(w[k + 1] - w[0]);
     const int affine = t->rung == EW_RUNG_AFFINE;
-    for (int k = 0; k < 2; k++) of.d[EW_PLANE_U][k] = of.d[EW_PLANE_V][k] = 0;
-    if (has_texture) textured(t, &of, raster, c, w, affine);
-    if (has_shades) shaded(t, &of, c, w, affine);
+    for (int k = 0; k < 2; k++) of->d[EW_PLANE_U][k] = of->d[EW_PLANE_V][k] = 0;
+    if (has_texture) textured(t, of, raster, c, w, affine);
+    if (has_shades) shaded(t, of, c, w, affine);
     t->plain = plainness(raster, w_min, w_max);
     if (t->rung == EW_RUNG_CONSTANT) t->attributes = 0; /* corner 0's are taken everywhere */
 
-    int32_t x[3], y[3];
-    for (int i = 0; i < 3; i++) x[i] = v[i]->x, y[i] = v[i]->y;
-    basis b;
     t->column = c->from;
-    basis_init(&b, x, y, c->from, c->first);
+    basis_of_vertices(b, c);
     uint32_t least = smaller(smaller(w[0], w[1]), w[2]);
-    t->is_wide = (uint8_t)!is_narrow(&b, c, least, larger(larger(w[0], w[1]), w[2]), t->uv_bits);
+    t->is_wide = (uint8_t)!is_narrow(b, c, least, larger(larger(w[0], w[1]), w[2]), t->uv_bits);
     if (t->is_wide) {
-        wide_planes(t, &b, c, &of, w[0], least, c->from);
+        wide_planes(t, b, c, of, w[0], least);
     } else {
-        weights g;
-        weights_init(&g, &b);
+        ew_weights *g = &raster->work.now.setup.weights;
+        weights_init(g, b);
         for (int i = 0; i <= t->attributes; i++) {
-            plane32_init(&t->plane.narrow[i], &b, &g, i == EW_PLANE_W ? w[0] : 0, of.d[i][0], of.d[i][1]);
+            plane32_init(&t->plane.narrow[i], b, g, i == EW_PLANE_W ? w[0] : 0, of->d[i][0], of->d[i][1]);
         }
     }
     runs_init(t, raster);

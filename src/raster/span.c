@@ -12,21 +12,7 @@
 #include "fill.h"
 #include "triangle.h"
 
-/* What is linear along a piece of a span, from its first pixel on. */
-typedef struct linear {
-    uint32_t w, dw;       /* w' times 2^align                                            */
-    uint32_t u, du, v, dv; /* attributes likewise; on the affine rung they alone, with their
-                             fraction bits                                               */
-    int align;
-    uint32_t shade[3], dshade[3];
-} linear;
 
-/* Attributes of a run's first pixel, with their fraction bits, and what they grow by. */
-typedef struct attribute_run {
-    uint32_t u, du, v, dv;
-    uint32_t u_down, v_down; /* what they grow by to the next row, with mip chains only */
-    uint32_t shade[3], dshade[3];
-} attribute_run;
 
 static int32_t larger(int32_t a, int32_t b) { return a > b ? a : b; }
 static int32_t smaller(int32_t a, int32_t b) { return a < b ? a : b; }
@@ -111,18 +97,8 @@ EW_ALWAYS_INLINE int one_run_suffices(const ew_triangle *t, uint32_t w, uint32_t
  * texel and fraction, v's texel, v's fraction. One addition steps both, one rotation brings
  * the texel number together; what v's texel carries goes into u's fraction, 256 times 2^-16
  * texel at most. */
-typedef struct packing {
-    ew_pixel_loop loop;
-    uint16_t *colour, *depth; /* where the next pixel goes                                */
-    uint32_t low;             /* bits of v's texel                                        */
-    uint32_t u_base, v_base;
-    uint8_t log2_height, u_shift, v_shift, newton;
-#if EW_TRACE
-    uint16_t x, y;
-#endif
-} packing;
 
-static void packing_init(packing *k, const ew_raster *raster, const ew_triangle *t)
+static void packing_init(ew_packing *k, const ew_raster *raster, const ew_triangle *t)
 {
     k->loop.texels = raster->texture.texels;
     k->loop.turn = 32u - raster->log2_width;
@@ -139,7 +115,7 @@ EW_ALWAYS_INLINE uint32_t depth_of(uint32_t w, int down) { return (w >> down) <<
 EW_ALWAYS_INLINE uint32_t depth_step(uint32_t dw, int down) { return (uint32_t)EW_ASR((int32_t)dw, down) << 1; }
 
 #if EW_TRACE
-static void trace(packing *k)
+static void trace(ew_packing *k)
 {
     const ew_pixel_loop *p = &k->loop;
     uint32_t v = p->high << (32 - k->log2_height) | p->low >> k->log2_height;
@@ -152,7 +128,7 @@ static void trace(packing *k)
 #endif
 
 /* n > 0 pixels, n at most EW_LONGEST_RUN, of a run with u and v at its first pixel. */
-EW_NOINLINE void fill_textured(packing *k, uint32_t u, uint32_t du, uint32_t v, uint32_t dv, int32_t n)
+EW_NOINLINE void fill_textured(ew_packing *k, uint32_t u, uint32_t du, uint32_t v, uint32_t dv, int32_t n)
 {
     const int log2_height = k->log2_height;
     const uint32_t low = k->low;
@@ -184,7 +160,7 @@ EW_NOINLINE void fill_textured(packing *k, uint32_t u, uint32_t du, uint32_t v, 
 }
 
 /* A run of n pixels that is exact at its pixel `half`. */
-EW_NOINLINE void run_of_texture(packing *k, const linear *l, uint32_t half, int32_t n)
+EW_NOINLINE void run_of_texture(ew_packing *k, const ew_linear *l, uint32_t half, int32_t n)
 {
     uint32_t dw = l->dw, du = l->du, dv = l->dv;
     divisor d = divisor_of(l->w + dw * half, k->newton);
@@ -193,7 +169,7 @@ EW_NOINLINE void run_of_texture(packing *k, const linear *l, uint32_t half, int3
     fill_textured(k, u - du * half, du, v - dv * half, dv, n);
 }
 
-EW_ALWAYS_INLINE void advance(linear *l, uint32_t n)
+EW_ALWAYS_INLINE void advance(ew_linear *l, uint32_t n)
 {
     l->w += l->dw * n;
     l->u += l->du * n;
@@ -201,7 +177,7 @@ EW_ALWAYS_INLINE void advance(linear *l, uint32_t n)
 }
 
 /* Each pixel with a reciprocal of its own. */
-EW_NOINLINE void textured_pixels(packing *k, linear *l, int32_t n)
+EW_NOINLINE void textured_pixels(ew_packing *k, ew_linear *l, int32_t n)
 {
 #if EW_TRACE
     for (; n > 0; n--, advance(l, 1)) {
@@ -229,7 +205,7 @@ EW_NOINLINE void textured_pixels(packing *k, linear *l, int32_t n)
 }
 
 /* A piece of a span, of at most EW_LONGEST_RUN pixels. */
-EW_NOINLINE void piece_of_texture(packing *k, const ew_triangle *t, linear *l, int32_t n)
+EW_NOINLINE void piece_of_texture(ew_packing *k, const ew_triangle *t, ew_linear *l, int32_t n)
 {
     enum { AT_ONCE = 16 }; /* pixels of their own before the next look whether a run pays */
     const int32_t shortest = t->shortest;
@@ -261,7 +237,7 @@ EW_NOINLINE void piece_of_texture(packing *k, const ew_triangle *t, linear *l, i
 /* ---- everything else ---- */
 
 /* A tangent may leave a shade's range: ew_fill_any clamps. */
-static void shade_run(ew_run *run, const ew_triangle *t, const attribute_run *from)
+static void shade_run(ew_run *run, const ew_triangle *t, const ew_attribute_run *from)
 {
     enum { DOWN = EW_FRACTION(EW_SHADE_BITS) - 16 };
     for (int i = 0; i < 3; i++) {
@@ -271,28 +247,26 @@ static void shade_run(ew_run *run, const ew_triangle *t, const attribute_run *fr
     }
 }
 
-/* Where ew_fill_any goes on, and 1/z there. */
-typedef struct position {
-    uint16_t x, y;
-    uint32_t w, dw;
-} position;
 
 static uint64_t texels_of(const ew_triangle *t, uint32_t a)
 {
     return (uint64_t)(int64_t)(int32_t)a << (32 - EW_FRACTION(t->uv_bits));
 }
 
-static void fill_any(const ew_raster *raster, const ew_triangle *t, position *at, const attribute_run *from, int32_t n)
+/* work.run of n pixels out of work.attributes; the position moves behind it. */
+EW_NOINLINE void make_run(ew_raster *raster, int32_t n)
 {
-    ew_run run;
-    run.x = at->x, run.y = at->y;
-    run.w = at->w, run.dw = at->dw;
-    run.u = ((uint64_t)(int64_t)t->u_origin << 20) + texels_of(t, from->u);
-    run.v = ((uint64_t)(int64_t)t->v_origin << 20) + texels_of(t, from->v);
-    run.du = texels_of(t, from->du), run.dv = texels_of(t, from->dv);
-    run.u_down = texels_of(t, from->u_down), run.v_down = texels_of(t, from->v_down);
-    if (EW_WITH_SHADING && raster->material.flags & EW_SHADED) shade_run(&run, t, from);
-    ew_fill_any(raster, &run, n);
+    const ew_triangle *t = &raster->work.triangle;
+    const ew_attribute_run *from = &raster->work.now.span.fill.any.attributes;
+    ew_position *at = &raster->work.now.span.fill.any.position;
+    ew_run *run = &raster->work.now.span.fill.any.run;
+    run->x = at->x, run->y = at->y;
+    run->w = at->w, run->dw = at->dw;
+    run->u = ((uint64_t)(int64_t)t->u_origin << 20) + texels_of(t, from->u);
+    run->v = ((uint64_t)(int64_t)t->v_origin << 20) + texels_of(t, from->v);
+    run->du = texels_of(t, from->du), run->dv = texels_of(t, from->dv);
+    run->u_down = texels_of(t, from->u_down), run->v_down = texels_of(t, from->v_down);
+    if (EW_WITH_SHADING && raster->material.flags & EW_SHADED) shade_run(run, t, from);
     at->x = (uint16_t)(at->x + n);
     at->w += at->dw * (uint32_t)n;
 }
@@ -311,7 +285,7 @@ static uint32_t steep_slope(uint32_t a, uint32_t da, uint32_t dw, divisor d)
 }
 
 /* Slopes across and down of mip chains at a pixel: their level depends on all four. */
-static void mip_slopes(attribute_run *run, const ew_triangle *t, const linear *l, uint32_t u, uint32_t v, divisor d)
+static void mip_slopes(ew_attribute_run *run, const ew_triangle *t, const ew_linear *l, uint32_t u, uint32_t v, divisor d)
 {
     uint32_t dw = down_of(t, EW_PLANE_W, l->align);
     run->du = steep_slope(u, l->du, l->dw, d);
@@ -321,7 +295,7 @@ static void mip_slopes(attribute_run *run, const ew_triangle *t, const linear *l
 }
 
 /* A run as the tangent at its pixel `half`. */
-static void run_of_any(attribute_run *run, const ew_raster *raster, const ew_triangle *t, const linear *l, uint32_t half)
+static void run_of_any(ew_attribute_run *run, const ew_raster *raster, const ew_triangle *t, const ew_linear *l, uint32_t half)
 {
     divisor d = divisor_of(l->w + l->dw * half, t->newton);
     uint32_t u = over_w(l->u + l->du * half, d), v = over_w(l->v + l->dv * half, d);
@@ -338,29 +312,45 @@ static void run_of_any(attribute_run *run, const ew_raster *raster, const ew_tri
     }
 }
 
-EW_NOINLINE void piece_of_any(const ew_raster *raster, const ew_triangle *t, position *at, linear *l, int32_t n)
+/* Attributes that need no division. */
+static void run_of_affine(ew_attribute_run *run, const ew_triangle *t, const ew_linear *l)
 {
-    attribute_run run;
+    run->u = l->u, run->du = l->du, run->v = l->v, run->dv = l->dv;
+    run->u_down = t->attributes ? down_of(t, EW_PLANE_U, 0) : 0;
+    run->v_down = t->attributes ? down_of(t, EW_PLANE_V, 0) : 0;
+    for (int i = 0; i < 3; i++) {
+        run->shade[i] = t->attributes > 2 ? l->shade[i] : 0;
+        run->dshade[i] = t->attributes > 2 ? l->dshade[i] : 0;
+    }
+}
+
+/* work.attributes of the next run, of at most n pixels, behind which work.linear moves. Returns
+ * its length. */
+EW_NOINLINE int32_t next_of_any(ew_raster *raster, int32_t n)
+{
+    const ew_triangle *t = &raster->work.triangle;
+    ew_linear *l = &raster->work.now.span.linear;
+    ew_attribute_run *run = &raster->work.now.span.fill.any.attributes;
     if (t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_CONSTANT) {
-        run.u = l->u, run.du = l->du, run.v = l->v, run.dv = l->dv;
-        run.u_down = t->attributes ? down_of(t, EW_PLANE_U, 0) : 0;
-        run.v_down = t->attributes ? down_of(t, EW_PLANE_V, 0) : 0;
-        for (int i = 0; i < 3; i++) {
-            run.shade[i] = t->attributes > 2 ? l->shade[i] : 0;
-            run.dshade[i] = t->attributes > 2 ? l->dshade[i] : 0;
-        }
-        fill_any(raster, t, at, &run, n);
-        return;
+        run_of_affine(run, t, l);
+        return n;
     }
     const int per_pixel = t->rung == EW_RUNG_TABLE || t->rung == EW_RUNG_EXACT;
+    int32_t m = per_pixel ? 1 : (int32_t)run_length(t, l->w, l->dw, l->align);
+    m = larger(1, smaller(m, n));
+    run_of_any(run, raster, t, l, (uint32_t)m >> 1);
+    advance(l, (uint32_t)m);
+    for (int i = 0; i < t->attributes - 2; i++) l->shade[i] += l->dshade[i] * (uint32_t)m;
+    return m;
+}
+
+static void piece_of_any(ew_raster *raster, int32_t n)
+{
     while (n > 0) {
-        int32_t m = per_pixel ? 1 : (int32_t)run_length(t, l->w, l->dw, l->align);
-        m = larger(1, smaller(m, n));
-        run_of_any(&run, raster, t, l, (uint32_t)m >> 1);
-        fill_any(raster, t, at, &run, m);
+        const int32_t m = next_of_any(raster, n);
+        make_run(raster, m);
+        ew_fill_any(raster, &raster->work.now.span.fill.any.run, m);
         n -= m;
-        advance(l, (uint32_t)m);
-        for (int i = 0; i < t->attributes - 2; i++) l->shade[i] += l->dshade[i] * (uint32_t)m;
     }
 }
 
@@ -375,32 +365,32 @@ EW_ALWAYS_INLINE int is_plain(const ew_triangle *t, uint32_t w, uint32_t dw, int
     return w >= 32768u && w <= INT32_MAX && last >= 32768u && last <= INT32_MAX;
 }
 
-/* A piece of a span, of at most EW_LONGEST_RUN pixels: (x, y) is `offset` into the target. */
-EW_ALWAYS_INLINE void piece(const ew_raster *raster, const ew_triangle *t, linear *l, int32_t x, int32_t y, size_t offset,
-                         int32_t n)
+/* Makes ready for a piece of a span, of n <= EW_LONGEST_RUN pixels from (x, y) on, that
+ * work.linear describes. Returns whether piece_of_texture may draw it. */
+EW_NOINLINE int start_piece(ew_raster *raster, int32_t x, int32_t y, int32_t n)
 {
-    int down = smaller(t->w_lead + l->align, 31);
-    uint32_t w = depth_of(l->w, down), dw = depth_step(l->dw, down);
+    const ew_triangle *t = &raster->work.triangle;
+    const ew_linear *l = &raster->work.now.span.linear;
+    const int down = smaller(t->w_lead + l->align, 31);
+    const uint32_t w = depth_of(l->w, down), dw = depth_step(l->dw, down);
     if (is_plain(t, w, dw, n)) {
-        packing k;
-        packing_init(&k, raster, t);
-        k.loop.w = w, k.loop.dw = dw;
-        k.colour = (uint16_t *)raster->target.colour + offset;
-        k.depth = raster->target.depth + offset;
-#if EW_TRACE
-        k.x = (uint16_t)x, k.y = (uint16_t)y;
-#endif
-        piece_of_texture(&k, t, l, n);
-    } else {
-        position at;
-        at.x = (uint16_t)x, at.y = (uint16_t)y;
-        at.w = w, at.dw = dw;
-        piece_of_any(raster, t, &at, l, n);
+        const size_t offset = (size_t)y * raster->target.stride + (size_t)x;
+        ew_packing *k = &raster->work.now.span.fill.packing;
+        packing_init(k, raster, t);
+        k->loop.w = w, k->loop.dw = dw;
+        k->colour = (uint16_t *)raster->target.colour + offset;
+        k->depth = raster->target.depth + offset;
+        k->x = (uint16_t)x, k->y = (uint16_t)y;
+        return 1;
     }
+    ew_position *at = &raster->work.now.span.fill.any.position;
+    at->x = (uint16_t)x, at->y = (uint16_t)y;
+    at->w = w, at->dw = dw;
+    return 0;
 }
 
 /* w', u and v at x on the current row. */
-EW_ALWAYS_INLINE void narrow_start(linear *l, const ew_triangle *t, int32_t x)
+EW_ALWAYS_INLINE void narrow_start(ew_linear *l, const ew_triangle *t, int32_t x)
 {
     const ew_plane32 *p = t->plane.narrow;
     uint32_t columns = (uint32_t)(x - t->column);
@@ -409,22 +399,22 @@ EW_ALWAYS_INLINE void narrow_start(linear *l, const ew_triangle *t, int32_t x)
     l->v = p[EW_PLANE_V].row + l->dv * columns;
 }
 
-EW_NOINLINE void span_of_narrow(const ew_raster *raster, const ew_triangle *t, int32_t x, int32_t y, size_t offset,
-                                int32_t n)
+/* work.linear from x on. */
+EW_NOINLINE void start_narrow(ew_raster *raster, int32_t x)
 {
+    const ew_triangle *t = &raster->work.triangle;
     const ew_plane32 *p = &t->plane.narrow[EW_PLANE_SHADE];
-    linear l;
-    l.align = 0;
-    l.dw = t->plane.narrow[EW_PLANE_W].dx;
-    l.du = t->plane.narrow[EW_PLANE_U].dx;
-    l.dv = t->plane.narrow[EW_PLANE_V].dx;
-    narrow_start(&l, t, x);
-    if (t->attributes == 0) l.u = l.du = l.v = l.dv = 0;
+    ew_linear *l = &raster->work.now.span.linear;
+    l->align = 0;
+    l->dw = t->plane.narrow[EW_PLANE_W].dx;
+    l->du = t->plane.narrow[EW_PLANE_U].dx;
+    l->dv = t->plane.narrow[EW_PLANE_V].dx;
+    narrow_start(l, t, x);
+    if (t->attributes == 0) l->u = l->du = l->v = l->dv = 0;
     for (int i = 0; i < t->attributes - 2; i++) {
-        l.shade[i] = p[i].row + p[i].dx * (uint32_t)(x - t->column);
-        l.dshade[i] = p[i].dx;
+        l->shade[i] = p[i].row + p[i].dx * (uint32_t)(x - t->column);
+        l->dshade[i] = p[i].dx;
     }
-    piece(raster, t, &l, x, y, offset, n);
 }
 
 /* w' at two ends, aligned to the left as far as both allow; w' of a sliver's plane may come
@@ -447,7 +437,7 @@ EW_ALWAYS_INLINE int steps_suffice(const ew_triangle *t, uint32_t w, uint32_t la
 }
 
 /* The same for wide triangles, unaligned. */
-EW_NOINLINE void wide_start(linear *l, const ew_triangle *t, int32_t x)
+EW_NOINLINE void wide_start(ew_linear *l, const ew_triangle *t, int32_t x)
 {
     const ew_plane64 *p = t->plane.wide;
     x -= t->column;
@@ -469,34 +459,32 @@ static int32_t piece_length(const ew_triangle *t, uint64_t w, int32_t n, int *al
     }
 }
 
-EW_NOINLINE void span_of_wide(const ew_raster *raster, const ew_triangle *t, int32_t x, int32_t y, size_t offset, int32_t n)
+static uint32_t wide_at(const ew_plane64 *p, int32_t columns, int align)
 {
+    return top_of(p->row + ew_wrap_mul64(p->dx, columns), align);
+}
+
+/* work.linear from x on, for as many of n pixels as it will do. Returns their number. */
+EW_NOINLINE int32_t next_of_wide(ew_raster *raster, int32_t x, int32_t n)
+{
+    const ew_triangle *t = &raster->work.triangle;
     const ew_plane64 *p = t->plane.wide;
-    while (n > 0) {
-        uint64_t at[EW_PLANES];
-        uint32_t dx[EW_PLANES];
-        linear l;
-        at[0] = p[0].row + ew_wrap_mul64(p[0].dx, x - t->column);
-        int32_t m = piece_length(t, at[0], n, &l.align);
-        for (int i = 0; i <= t->attributes; i++) {
-            if (i) at[i] = p[i].row + ew_wrap_mul64(p[i].dx, x - t->column);
-            dx[i] = top_of(p[i].dx, l.align);
-        }
-        l.w = (int64_t)at[0] > 0 ? top_of(at[0], l.align) : 1; /* then m is 1 */
-        l.dw = dx[0];
-        l.u = l.du = l.v = l.dv = 0;
-        if (t->attributes) {
-            l.u = top_of(at[EW_PLANE_U], l.align), l.du = dx[EW_PLANE_U];
-            l.v = top_of(at[EW_PLANE_V], l.align), l.dv = dx[EW_PLANE_V];
-            for (int i = 0; i < t->attributes - 2; i++) {
-                l.shade[i] = top_of(at[EW_PLANE_SHADE + i], l.align), l.dshade[i] = dx[EW_PLANE_SHADE + i];
-            }
-        }
-        piece(raster, t, &l, x, y, offset, m);
-        x += m;
-        offset += (size_t)m;
-        n -= m;
+    ew_linear *l = &raster->work.now.span.linear;
+    x -= t->column;
+    const uint64_t w = p[EW_PLANE_W].row + ew_wrap_mul64(p[EW_PLANE_W].dx, x);
+    n = piece_length(t, w, n, &l->align);
+    l->w = (int64_t)w > 0 ? top_of(w, l->align) : 1; /* then n is 1 */
+    l->dw = top_of(p[EW_PLANE_W].dx, l->align);
+    l->u = l->du = l->v = l->dv = 0;
+    if (t->attributes) {
+        l->u = wide_at(&p[EW_PLANE_U], x, l->align), l->du = top_of(p[EW_PLANE_U].dx, l->align);
+        l->v = wide_at(&p[EW_PLANE_V], x, l->align), l->dv = top_of(p[EW_PLANE_V].dx, l->align);
     }
+    p += EW_PLANE_SHADE;
+    for (int i = 0; i < t->attributes - 2; i++, p++) {
+        l->shade[i] = wide_at(p, x, l->align), l->dshade[i] = top_of(p->dx, l->align);
+    }
+    return n;
 }
 
 /* ---- rows ---- */
@@ -516,45 +504,67 @@ EW_ALWAYS_INLINE void planes_step(ew_triangle *t, int wide, int attributes)
     for (int i = EW_PLANE_SHADE; i <= attributes; i++) p[i].row += p[i].dy;
 }
 
+/* Steps along rows, which stay as they are. */
+EW_ALWAYS_INLINE void steps_start(ew_packing *k, ew_linear *s, const ew_triangle *t, int wide)
+{
+    s->align = 0;
+    s->dw = wide ? top_of(t->plane.wide[EW_PLANE_W].dx, 0) : t->plane.narrow[EW_PLANE_W].dx;
+    s->du = wide ? top_of(t->plane.wide[EW_PLANE_U].dx, 0) : t->plane.narrow[EW_PLANE_U].dx;
+    s->dv = wide ? top_of(t->plane.wide[EW_PLANE_V].dx, 0) : t->plane.narrow[EW_PLANE_V].dx;
+    k->loop.dw = depth_step(s->dw, t->w_lead);
+}
+
+/* A span that is too long for steps of 32 bits. */
+EW_NOINLINE void pieces_of_texture(ew_raster *raster, int32_t x, int32_t n)
+{
+    const ew_triangle *t = &raster->work.triangle;
+    ew_packing *k = &raster->work.now.span.fill.packing;
+    ew_linear *l = &raster->work.now.span.linear;
+    while (n > 0) {
+        const int32_t m = next_of_wide(raster, x, n);
+        k->loop.w = depth_of(l->w, t->w_lead + l->align);
+        k->loop.dw = depth_step(l->dw, t->w_lead + l->align);
+        piece_of_texture(k, t, l, m);
+        x += m;
+        n -= m;
+    }
+    steps_start(k, l, t, 1);
+}
+
 /* Triangles with a texture, depth and nothing else, on the affine rung or in runs: ew_walk_rows
  * for the common case. */
-EW_ALWAYS_INLINE int rows_of_texture(const ew_raster *raster, ew_triangle *t, ew_edge *left, ew_edge *right, int32_t row,
-                                     int32_t end, int wide)
+EW_ALWAYS_INLINE int rows_of_texture(ew_raster *raster, int32_t row, int32_t end, int wide)
 {
+    ew_triangle *t = &raster->work.triangle;
     const int32_t clip_left = raster->scissor.x0, clip_right = raster->scissor.x1;
-    const int affine = t->rung == EW_RUNG_AFFINE, down = t->w_lead;
     const size_t offset = (size_t)row * raster->target.stride;
     uint16_t *colour = (uint16_t *)raster->target.colour + offset, *depth = raster->target.depth + offset;
-    ew_edge l = *left, r = *right; /* or they would be read and written around each span */
+    ew_edge l = raster->work.edge[0], r = raster->work.edge[1]; /* or they would be read and written around each span */
+    ew_linear *s = &raster->work.now.span.linear;
+    ew_packing *k = &raster->work.now.span.fill.packing;
     int reached = 0;
-    linear s;
-    packing k;
-    packing_init(&k, raster, t);
-    s.align = 0;
-    s.dw = wide ? top_of(t->plane.wide[EW_PLANE_W].dx, 0) : t->plane.narrow[EW_PLANE_W].dx;
-    s.du = wide ? top_of(t->plane.wide[EW_PLANE_U].dx, 0) : t->plane.narrow[EW_PLANE_U].dx;
-    s.dv = wide ? top_of(t->plane.wide[EW_PLANE_V].dx, 0) : t->plane.narrow[EW_PLANE_V].dx;
-    k.loop.dw = depth_step(s.dw, down);
+    packing_init(k, raster, t);
+    steps_start(k, s, t, wide);
     for (; row < end; row++) {
         int32_t x = larger(l.x, clip_left), n = smaller(r.x, clip_right) - x;
         if (n > 0) {
             int whole = 1;
-            k.colour = colour + x;
-            k.depth = depth + x;
+            k->colour = colour + x;
+            k->depth = depth + x;
 #if EW_TRACE
-            k.x = (uint16_t)x, k.y = (uint16_t)row;
+            k->x = (uint16_t)x, k->y = (uint16_t)row;
 #endif
             if (wide) {
-                wide_start(&s, t, x);
-                whole = steps_suffice(t, s.w, s.w + s.dw * (uint32_t)(n - 1), n);
+                wide_start(s, t, x);
+                whole = steps_suffice(t, s->w, s->w + s->dw * (uint32_t)(n - 1), n);
             } else {
-                narrow_start(&s, t, x);
+                narrow_start(s, t, x);
             }
-            k.loop.w = depth_of(s.w, down);
-            if (!whole) span_of_wide(raster, t, x, row, (size_t)(k.colour - (uint16_t *)raster->target.colour), n);
-            else if (affine) fill_textured(&k, s.u, s.du, s.v, s.dv, n);
-            else if (one_run_suffices(t, s.w, s.dw, n)) run_of_texture(&k, &s, (uint32_t)n >> 1, n);
-            else piece_of_texture(&k, t, &s, n);
+            k->loop.w = depth_of(s->w, t->w_lead);
+            if (!whole) pieces_of_texture(raster, x, n);
+            else if (t->rung == EW_RUNG_AFFINE) fill_textured(k, s->u, s->du, s->v, s->dv, n);
+            else if (one_run_suffices(t, s->w, s->dw, n)) run_of_texture(k, s, (uint32_t)n >> 1, n);
+            else piece_of_texture(k, t, s, n);
             reached = 1;
         }
         ew_edge_step(&l);
@@ -563,39 +573,57 @@ EW_ALWAYS_INLINE int rows_of_texture(const ew_raster *raster, ew_triangle *t, ew
         colour += raster->target.stride;
         depth += raster->target.stride;
     }
-    *left = l;
-    *right = r;
+    raster->work.edge[0] = l;
+    raster->work.edge[1] = r;
     return reached;
 }
-EW_NOINLINE int rows_of_narrow(const ew_raster *raster, ew_triangle *t, ew_edge *left, ew_edge *right, int32_t row, int32_t end)
+EW_NOINLINE int rows_of_narrow(ew_raster *raster, int32_t row, int32_t end)
 {
-    return rows_of_texture(raster, t, left, right, row, end, 0);
+    return rows_of_texture(raster, row, end, 0);
 }
-EW_NOINLINE int rows_of_wide(const ew_raster *raster, ew_triangle *t, ew_edge *left, ew_edge *right, int32_t row, int32_t end)
+EW_NOINLINE int rows_of_wide(ew_raster *raster, int32_t row, int32_t end)
 {
-    return rows_of_texture(raster, t, left, right, row, end, 1);
+    return rows_of_texture(raster, row, end, 1);
 }
 
-int ew_walk_rows(const ew_raster *raster, ew_triangle *t, ew_edge *left, ew_edge *right, int32_t row, int32_t end)
+static void span_of_any(ew_raster *raster, int32_t x, int32_t y, int32_t n)
 {
-    if (t->is_quick && t->is_wide) return rows_of_wide(raster, t, left, right, row, end);
-    if (t->is_quick) return rows_of_narrow(raster, t, left, right, row, end);
+    const ew_triangle *t = &raster->work.triangle;
+    while (n > 0) {
+        int32_t m = n;
+        if (t->is_wide) m = next_of_wide(raster, x, n);
+        else start_narrow(raster, x);
+        if (start_piece(raster, x, y, m)) {
+            piece_of_texture(&raster->work.now.span.fill.packing, t, &raster->work.now.span.linear, m);
+        } else {
+            piece_of_any(raster, m);
+        }
+        x += m;
+        n -= m;
+    }
+}
+
+EW_NOINLINE int rows_of_any(ew_raster *raster, int32_t row, int32_t end)
+{
+    ew_triangle *t = &raster->work.triangle;
+    ew_edge *edge = raster->work.edge;
     int reached = 0;
-    const int32_t clip_left = raster->scissor.x0, clip_right = raster->scissor.x1;
-    ew_edge l = *left, r = *right; /* or they would be read and written around each span */
-    size_t offset = (size_t)row * raster->target.stride;
-    for (; row < end; row++, offset += raster->target.stride) {
-        int32_t x0 = larger(l.x, clip_left), x1 = smaller(r.x, clip_right);
-        if (x0 < x1) {
-            if (t->is_wide) span_of_wide(raster, t, x0, row, offset + (size_t)x0, x1 - x0);
-            else span_of_narrow(raster, t, x0, row, offset + (size_t)x0, x1 - x0);
+    for (; row < end; row++) {
+        int32_t x = larger(edge[0].x, raster->scissor.x0), n = smaller(edge[1].x, raster->scissor.x1) - x;
+        if (n > 0) {
+            span_of_any(raster, x, row, n);
             reached = 1;
         }
-        ew_edge_step(&l);
-        ew_edge_step(&r);
+        ew_edge_step(&edge[0]);
+        ew_edge_step(&edge[1]);
         planes_step(t, t->is_wide, t->attributes);
     }
-    *left = l;
-    *right = r;
     return reached;
+}
+
+int ew_walk_rows(ew_raster *raster, int32_t row, int32_t end)
+{
+    const ew_triangle *t = &raster->work.triangle;
+    if (!t->is_quick) return rows_of_any(raster, row, end);
+    return t->is_wide ? rows_of_wide(raster, row, end) : rows_of_narrow(raster, row, end);
 }

@@ -80,40 +80,34 @@ static uint64_t scaled(uint64_t u, uint32_t ratio)
     return ((uint64_t)top << 32 | whole * ratio) + ew_mulh_u32(fraction, ratio);
 }
 
-typedef struct axis {
-    uint64_t at, step; /* q32.32                                                           */
-    uint32_t period;   /* texels; 0: clamped                                               */
-    uint32_t size;     /* texels of the level                                              */
-} axis;
 
-/* u and du are texels of the first level. `back` is taken off the position, below one texel. */
-EW_NOINLINE void axis_start(axis *a, uint64_t u, uint64_t du, uint32_t size, uint32_t level, int wrap, uint32_t inverse,
-                            uint32_t back)
+/* The position, the step and the size are those of the first level. `back` is taken off the
+ * position, below one texel. */
+EW_NOINLINE void axis_start(ew_axis *a, uint32_t level, int wrap, uint32_t inverse, uint32_t back)
 {
     const int clamped = EW_WITH_WRAPS && wrap == EW_WRAP_CLAMP;
-    a->size = EW_WITH_MIPS && level ? (size >> level ? size >> level : 1u) : size;
+    const uint32_t size = a->size;
+    if (EW_WITH_MIPS && level) a->size = size >> level ? size >> level : 1u;
     a->period = clamped ? 0 : period_of(a->size, wrap);
     if (!clamped) {
         const uint64_t whole = (uint64_t)period_of(size, wrap) << 32;
-        u = within_period(u, size, wrap, inverse);
-        du = within_period(du, size, wrap, inverse);
-        if (du > whole >> 1) du -= whole; /* the smaller step loses less when it is scaled */
+        a->at = within_period(a->at, size, wrap, inverse);
+        a->step = within_period(a->step, size, wrap, inverse);
+        if (a->step > whole >> 1) a->step -= whole; /* the smaller step loses less when it is scaled */
     }
     if (EW_WITH_MIPS && a->size != size) {
-        u = scaled(u, a->size * inverse); /* inverse <= 2^31: the level is at most half as large */
-        du = scaled(du, a->size * inverse);
+        a->at = scaled(a->at, a->size * inverse); /* inverse <= 2^31: the level is at most half as large */
+        a->step = scaled(a->step, a->size * inverse);
     }
-    u -= back;
+    a->at -= back;
     if (!clamped) {
-        if (u >> 63) u += (uint64_t)a->period << 32;
-        if (du >> 63) du += (uint64_t)a->period << 32;
+        if (a->at >> 63) a->at += (uint64_t)a->period << 32;
+        if (a->step >> 63) a->step += (uint64_t)a->period << 32;
     }
-    a->at = u;
-    a->step = du;
 }
 
 /* With the sum below 2 periods. */
-static void axis_step(axis *a)
+static void axis_step(ew_axis *a)
 {
     a->at += a->step;
     if (a->period && a->at >> 32 >= a->period) a->at -= (uint64_t)a->period << 32;
@@ -125,7 +119,7 @@ static uint32_t clamp(uint32_t i, uint32_t size)
 }
 
 /* The texel of the position, or the one `next` behind it, 0 or 1. */
-static uint32_t texel_index(const axis *a, uint32_t next)
+static uint32_t texel_index(const ew_axis *a, uint32_t next)
 {
     uint32_t i = (uint32_t)(a->at >> 32) + next;
     if (EW_WITH_WRAPS && !a->period) return clamp(i, a->size);
@@ -173,23 +167,10 @@ uint32_t ew_texture_level(const ew_run *run)
 }
 #endif
 
-/* A level as it lies in memory, the position in it, and what to do with its colours. */
-typedef struct sampler {
-    const ew_texture *texture;
-    const uint8_t *texels;
-    const uint8_t *mask; /* NULL: none                                                     */
-    axis u, v;
-    uint16_t row_bytes, mask_row_bytes; /* 4096 at most                                     */
-    uint16_t share;    /* of 256: how far they take the place of what the piece has        */
-    uint8_t log2_bits; /* of a texel                                                      */
-    uint8_t wide;      /* of ew_decode_565                                                */
-    uint8_t smooth;    /* bilinear                                                        */
-    uint8_t cuts;      /* EW_COLOUR_KEY, EW_ALPHA_MASK: by which this level leaves texels out */
-} sampler;
 
 static uint32_t row_bytes_of(uint32_t width, int log2_bits) { return ((width << log2_bits) + 7u) >> 3; }
 
-static void find_level(sampler *s, uint32_t level)
+static void find_level(ew_sampler *s, uint32_t level)
 {
     uint32_t width = s->texture->width, height = s->texture->height;
     s->texels = s->texture->texels;
@@ -205,14 +186,14 @@ static void find_level(sampler *s, uint32_t level)
 
 /* ---- texels ---- */
 
-static uint32_t stored(const sampler *s, uint32_t column, uint32_t row)
+static uint32_t stored(const ew_sampler *s, uint32_t column, uint32_t row)
 {
     const uint8_t *line = s->texels + (size_t)row * s->row_bytes;
     if (!EW_WITH_TEXTURE_FORMATS || s->log2_bits == 4) return ((const uint16_t *)(const void *)line)[column];
     return ew_packed_get(line, column, s->log2_bits);
 }
 
-EW_NOINLINE void fetch(const sampler *s, uint32_t column, uint32_t row, uint16_t out[3])
+EW_NOINLINE void fetch(const ew_sampler *s, uint32_t column, uint32_t row, uint16_t out[3])
 {
     const ew_texture *t = s->texture;
     uint32_t value = stored(s, column, row);
@@ -226,7 +207,7 @@ EW_NOINLINE void fetch(const sampler *s, uint32_t column, uint32_t row, uint16_t
 }
 
 /* Whether a texel is left out. */
-EW_NOINLINE int is_cut(const sampler *s, uint32_t column, uint32_t row)
+EW_NOINLINE int is_cut(const ew_sampler *s, uint32_t column, uint32_t row)
 {
     if ((s->cuts & EW_ALPHA_MASK) && !ew_packed_get(s->mask + (size_t)row * s->mask_row_bytes, column, 0)) return 1;
     return (s->cuts & EW_COLOUR_KEY) && stored(s, column, row) == s->texture->key;
@@ -235,16 +216,16 @@ EW_NOINLINE int is_cut(const sampler *s, uint32_t column, uint32_t row)
 #if EW_WITH_BILINEAR
 /* The four texels around a position whose whole part is the upper left one, weighted in
  * 1/32: fu and fv are five bits of the fraction. */
-EW_NOINLINE void fetch_four(const sampler *s, uint32_t fu, uint32_t fv, uint16_t out[3])
+EW_NOINLINE void fetch_four(ew_sampler *s, uint32_t fu, uint32_t fv, uint16_t out[3])
 {
     const uint32_t both = (fu * fv + 16u) >> 5; /* the weights: none is below 0, their sum is 32 */
-    uint32_t sum[3] = { 0, 0, 0 };
+    s->sum[0] = s->sum[1] = s->sum[2] = 0;
     for (uint32_t k = 0; k < 4; k++) {
         const uint32_t weight = k == 0 ? 32u - fu - fv + both : k == 1 ? fu - both : k == 2 ? fv - both : both;
         fetch(s, texel_index(&s->u, k & 1u), texel_index(&s->v, k >> 1), out);
-        for (int j = 0; j < 3; j++) sum[j] += weight * out[j]; /* <= 32 * 4095 */
+        for (int j = 0; j < 3; j++) s->sum[j] += weight * out[j]; /* <= 32 * 4095 */
     }
-    for (int j = 0; j < 3; j++) out[j] = (uint16_t)(sum[j] >> 5);
+    for (int j = 0; j < 3; j++) out[j] = (uint16_t)(s->sum[j] >> 5);
 }
 #endif
 
@@ -253,7 +234,7 @@ EW_NOINLINE void fetch_four(const sampler *s, uint32_t fu, uint32_t fv, uint16_t
 /* Bilinear positions begin at the upper left texel's centre; 1/64 texel rounds the weights. */
 #define HALF_TEXEL ((UINT32_C(1) << 31) - (UINT32_C(1) << 26))
 
-EW_NOINLINE void start(sampler *s, const ew_raster *raster, const ew_run *run, uint32_t level)
+EW_NOINLINE void start(ew_sampler *s, const ew_raster *raster, const ew_run *run, uint32_t level)
 {
     const ew_texture *t = &raster->texture;
     s->texture = t;
@@ -263,11 +244,13 @@ EW_NOINLINE void start(sampler *s, const ew_raster *raster, const ew_run *run, u
     s->smooth = EW_WITH_BILINEAR && raster->material.filter != EW_FILTER_NEAREST;
     find_level(s, level);
     const uint32_t back = s->smooth ? HALF_TEXEL : 0;
-    axis_start(&s->u, run->u, run->du, t->width, level, t->wrap_u, raster->inverse_width, back);
-    axis_start(&s->v, run->v, run->dv, t->height, level, t->wrap_v, raster->inverse_height, back);
+    s->u.at = run->u, s->u.step = run->du, s->u.size = t->width;
+    s->v.at = run->v, s->v.step = run->dv, s->v.size = t->height;
+    axis_start(&s->u, level, t->wrap_u, raster->inverse_width, back);
+    axis_start(&s->v, level, t->wrap_v, raster->inverse_height, back);
 }
 
-EW_NOINLINE void sample_pixel(const sampler *s, ew_piece *piece, int i)
+static void sample_pixel(ew_sampler *s, ew_piece *piece, int i)
 {
     const uint32_t fu = s->smooth ? (uint32_t)(s->u.at >> 27 & 31u) : 0, fv = s->smooth ? (uint32_t)(s->v.at >> 27 & 31u) : 0;
     /* the nearest texel is the one with the larger weight */
@@ -291,7 +274,7 @@ EW_NOINLINE void sample_pixel(const sampler *s, ew_piece *piece, int i)
     }
 }
 
-EW_NOINLINE void sample_level(sampler *s, ew_piece *piece)
+EW_NOINLINE void sample_level(ew_sampler *s, ew_piece *piece)
 {
     for (int i = 0; i < piece->n; i++) {
         if (piece->live >> i & 1) sample_pixel(s, piece, i);
@@ -300,11 +283,11 @@ EW_NOINLINE void sample_level(sampler *s, ew_piece *piece)
     }
 }
 
-void ew_texture_sample(const ew_raster *raster, const ew_run *run, ew_piece *piece)
+void ew_texture_sample(ew_raster *raster, const ew_run *run, ew_piece *piece)
 {
     const uint8_t cuts = EW_WITH_CUTOUTS ? raster->material.flags & (EW_COLOUR_KEY | EW_ALPHA_MASK) : 0;
     uint32_t level = 0, share = 0; /* of the level behind it */
-    sampler s;
+    ew_sampler *s = &raster->work.now.span.fill.any.sampler;
 #if EW_WITH_MIPS
     if (raster->texture.levels > 1) {
         const uint32_t last = raster->texture.levels - 1u, lambda = ew_texture_level(run);
@@ -314,14 +297,14 @@ void ew_texture_sample(const ew_raster *raster, const ew_run *run, ew_piece *pie
         else if (two) share = lambda & 255u;
     }
 #endif
-    start(&s, raster, run, level);
-    s.share = 256;
-    s.cuts = share < 128 ? cuts : 0;
-    sample_level(&s, piece);
+    start(s, raster, run, level);
+    s->share = 256;
+    s->cuts = share < 128 ? cuts : 0;
+    sample_level(s, piece);
     if (EW_WITH_MIPS && share) {
-        start(&s, raster, run, level + 1u);
-        s.share = (uint16_t)share;
-        s.cuts = share < 128 ? 0 : cuts;
-        sample_level(&s, piece);
+        start(s, raster, run, level + 1u);
+        s->share = (uint16_t)share;
+        s->cuts = share < 128 ? 0 : cuts;
+        sample_level(s, piece);
     }
 }

@@ -13,7 +13,7 @@ uint32_t ew_texture_inverse(uint32_t size);
 
 /* The colours of a piece that begins at the run's first pixel. Pixels whose texel is left
  * out are no longer live. */
-void ew_texture_sample(const ew_raster *raster, const ew_run *run, ew_piece *piece);
+void ew_texture_sample(ew_raster *raster, const ew_run *run, ew_piece *piece);
 
 /* log2 of the texels per pixel, in 1/256, at most 1/150 off; 0 where it is below 0. Steps are
  * those of ew_run. */

@@ -1,35 +1,10 @@
 /* One triangle: range checks, snapping, culling, its two halves. */
 #include "triangle.h"
 
+#include "arch.h"
+
 static int32_t larger(int32_t a, int32_t b) { return a > b ? a : b; }
 static int32_t smaller(int32_t a, int32_t b) { return a < b ? a : b; }
-
-static int walk(const ew_raster *raster, ew_triangle *t, const ew_corners *c)
-{
-    /* Order by y; an odd number of exchanges turns the area's sign. */
-    const ew_snapped *sx = c->x, *sy = c->y;
-    int top = 0, middle = 1, bottom = 2, swap;
-    int middle_left = !c->positive;
-    if (sy[middle] < sy[top]) swap = top, top = middle, middle = swap, middle_left = !middle_left;
-    if (sy[bottom] < sy[middle]) {
-        swap = middle, middle = bottom, bottom = swap, middle_left = !middle_left;
-        if (sy[middle] < sy[top]) swap = top, top = middle, middle = swap, middle_left = !middle_left;
-    }
-    ew_edge longest, shorter;
-    int reached = 0;
-    int32_t turn = larger(c->first, smaller(ew_row_at(sy[middle]), c->end));
-    ew_edge_start(&longest, sx[top], sy[top], sx[bottom], sy[bottom], c->first);
-    ew_edge *left = middle_left ? &shorter : &longest, *right = middle_left ? &longest : &shorter;
-    if (c->first < turn) {
-        ew_edge_start(&shorter, sx[top], sy[top], sx[middle], sy[middle], c->first);
-        reached |= ew_walk_rows(raster, t, left, right, c->first, turn);
-    }
-    if (turn < c->end) {
-        ew_edge_start(&shorter, sx[middle], sy[middle], sx[bottom], sy[bottom], turn);
-        reached |= ew_walk_rows(raster, t, left, right, turn, c->end);
-    }
-    return reached;
-}
 
 static int in_range(const ew_raster_vertex *v)
 {
@@ -45,34 +20,75 @@ int ew_raster_triangle(ew_raster *raster, const ew_raster_vertex *a, const ew_ra
     return ew_raster_triangle_in_range(raster, a, b, c);
 }
 
-int ew_raster_triangle_in_range(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_vertex *b,
-                                const ew_raster_vertex *c)
+/* Starts one side's edge on `row`. */
+EW_NOINLINE void start_edge(ew_raster *raster, uint8_t side, uint8_t from, uint8_t to, int32_t row)
 {
-    EW_ASSERT(in_range(a) && in_range(b) && in_range(c));
-    ew_corners corners;
-    ew_snapped *sx = corners.x, *sy = corners.y;
-    corners.v[0] = a, corners.v[1] = b, corners.v[2] = c;
+    const ew_corners *c = &raster->work.corners;
+    ew_edge_start(&raster->work.edge[side], c->x[from], c->y[from], c->x[to], c->y[to], row);
+}
+
+static void order(ew_corners *c)
+{
+    /* Order by y; an odd number of exchanges turns the area's sign. */
+    const ew_snapped *sy = c->y;
+    uint8_t top = 0, middle = 1, bottom = 2, swap;
+    int middle_left = !c->positive;
+    if (sy[middle] < sy[top]) swap = top, top = middle, middle = swap, middle_left = !middle_left;
+    if (sy[bottom] < sy[middle]) {
+        swap = middle, middle = bottom, bottom = swap, middle_left = !middle_left;
+        if (sy[middle] < sy[top]) swap = top, top = middle, middle = swap, middle_left = !middle_left;
+    }
+    c->top = top, c->middle = middle, c->bottom = bottom;
+    c->longest = (uint8_t)middle_left;
+    c->turn = larger(c->first, smaller(ew_row_at(sy[middle]), c->end));
+}
+
+/* Fills in work.corners. Returns 0 for a triangle that faces away, has no area or covers no
+ * pixel centre inside the scissor. */
+EW_NOINLINE int place(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *c)
+{
+    ew_corners *corners = &raster->work.corners;
+    ew_snapped *sx = corners->x, *sy = corners->y;
+    corners->v[0] = a, corners->v[1] = b, corners->v[2] = c;
     for (int i = 0; i < 3; i++) {
-        sx[i] = ew_snapped_from_q20_12(corners.v[i]->x);
-        sy[i] = ew_snapped_from_q20_12(corners.v[i]->y);
+        sx[i] = ew_snapped_from_q20_12(corners->v[i]->x);
+        sy[i] = ew_snapped_from_q20_12(corners->v[i]->y);
     }
     /* Differences are within 2^26, the area within 2^53. */
     int64_t area = ew_mul_s32(sx[1] - sx[0], sy[2] - sy[0]) - ew_mul_s32(sx[2] - sx[0], sy[1] - sy[0]);
     if (area == 0 || (area > 0 && !(raster->material.flags & EW_DOUBLE_SIDED))) return 0;
-    corners.positive = area > 0;
+    corners->positive = area > 0;
 
     const ew_rect *clip = &raster->scissor;
-    corners.first = larger(ew_row_at(smaller(sy[0], smaller(sy[1], sy[2]))), clip->y0);
-    corners.end = smaller(ew_row_at(larger(sy[0], larger(sy[1], sy[2]))), clip->y1);
-    corners.from = larger(ew_row_at(smaller(sx[0], smaller(sx[1], sx[2]))), clip->x0);
-    corners.to = smaller(ew_row_at(larger(sx[0], larger(sx[1], sx[2]))), clip->x1);
-    if (corners.first >= corners.end || corners.from >= corners.to) return 0;
+    corners->first = larger(ew_row_at(smaller(sy[0], smaller(sy[1], sy[2]))), clip->y0);
+    corners->end = smaller(ew_row_at(larger(sy[0], larger(sy[1], sy[2]))), clip->y1);
+    corners->from = larger(ew_row_at(smaller(sx[0], smaller(sx[1], sx[2]))), clip->x0);
+    corners->to = smaller(ew_row_at(larger(sx[0], larger(sx[1], sx[2]))), clip->x1);
+    if (corners->first >= corners->end || corners->from >= corners->to) return 0;
+    order(corners);
+    return 1;
+}
 
-    ew_triangle t;
-    int error = ew_setup(&t, raster, &corners);
+int ew_raster_triangle_in_range(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_vertex *b,
+                                const ew_raster_vertex *c)
+{
+    EW_ASSERT(in_range(a) && in_range(b) && in_range(c));
+    if (!place(raster, a, b, c)) return 0;
+    int error = ew_setup(raster);
     if (error) return error;
 #if EW_TRACE
-    ew_trace_triangle(a, b, c, t.rung);
+    ew_trace_triangle(a, b, c, raster->work.triangle.rung);
 #endif
-    return walk(raster, &t, &corners);
+    const ew_corners *k = &raster->work.corners;
+    int reached = 0;
+    start_edge(raster, k->longest, k->top, k->bottom, k->first);
+    if (k->first < k->turn) {
+        start_edge(raster, !k->longest, k->top, k->middle, k->first);
+        reached |= ew_walk_rows(raster, k->first, k->turn);
+    }
+    if (k->turn < k->end) {
+        start_edge(raster, !k->longest, k->middle, k->bottom, k->turn);
+        reached |= ew_walk_rows(raster, k->turn, k->end);
+    }
+    return reached;
 }

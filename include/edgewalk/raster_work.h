@@ -1,0 +1,221 @@
+/* edgewalk/raster_work.h - the raster layer's own; nothing for users.
+ *
+ * What the layer works with while it draws a triangle. It lies in the caller's context and
+ * not on the stack, which stays below 512 bytes; nothing in it outlives a call.
+ */
+#ifndef EW_RASTER_WORK_H
+#define EW_RASTER_WORK_H
+
+#include <stdint.h>
+
+#include "fixed.h"
+
+struct ew_raster_vertex;
+struct ew_texture;
+
+/* ---- set-up (setup.c, triangle.h) ---- */
+
+/* A quantity that is linear on the screen. Narrow triangles have 32 bits of it, all others
+ * 64 as a fraction that wraps, the 32 bits in the upper half: gradients of slivers may
+ * exceed the range many times over; since sums wrap too, values inside the triangle still
+ * come out right. */
+typedef struct ew_plane32 {
+    uint32_t row;    /* at the centre of pixel (column, current row)      */
+    uint32_t dx, dy; /* for one pixel to the right, for one row down      */
+} ew_plane32;
+typedef struct ew_plane64 {
+    uint64_t row, dx, dy;
+} ew_plane64;
+
+enum {
+    EW_ATTRIBUTES = 5, /* u, v, red, green, blue                                          */
+    EW_PLANE_W = 0, EW_PLANE_U, EW_PLANE_V, EW_PLANE_SHADE, EW_PLANES = 1 + EW_ATTRIBUTES
+};
+
+typedef struct ew_triangle {
+    union {
+        ew_plane32 narrow[EW_PLANES];
+        ew_plane64 wide[EW_PLANES];
+    } plane; /* 1/z, then the attributes                              */
+    int32_t column; /* the pixel column that `row` values belong to: inside the scissor and the
+                       triangle's box */
+    uint32_t u_base, v_base;    /* u and v of corner 0, top-aligned (span.c)     */
+    ew_q20_12 u_origin, v_origin; /* the same in texels                          */
+    int32_t shade_origin[3];    /* corner 0's, 2^24 is all                       */
+    uint16_t run_scale;         /* of run_length in span.c                       */
+    int16_t run_exponent;
+    uint16_t run_tolerance;     /* 1/16 px, 0 for runs of fixed length           */
+    uint16_t longest, shortest; /* run, px                                       */
+    uint8_t run_shift;          /* -run_exponent, 0 to 31: of one_run_suffices   */
+    uint8_t attributes;         /* how many planes follow that of w: 0, 2, 5     */
+    uint8_t is_wide;
+    uint8_t is_quick;           /* rows_of_texture (span.c) will do              */
+    uint8_t rung;               /* never EW_RUNG_AUTO                            */
+    uint8_t newton;             /* whether the better reciprocal is needed       */
+    uint8_t plain;              /* PLAIN_NEVER, PLAIN_SOMETIMES, PLAIN_ALWAYS    */
+    uint8_t w_lead;             /* 0 to 24: src/raster/triangle.h                */
+    uint8_t uv_bits;            /* EW_BITS_LEAST to EW_BITS_MOST                 */
+    uint8_t u_shift, v_shift;   /* left shifts that align u and v at the top, 1 to 20 */
+} ew_triangle;
+
+/* A triangle's corners, snapped, and where it lies. */
+typedef struct ew_corners {
+    const struct ew_raster_vertex *v[3];
+    ew_snapped x[3], y[3];
+    int32_t first, end, from, to;    /* rows and columns of its box in the scissor */
+    int32_t turn;                    /* the first row below the middle corner      */
+    uint8_t top, middle, bottom;     /* numbers of corners, by y                   */
+    uint8_t longest;                 /* the side of the edge from top to bottom: 0 is left */
+    uint8_t positive;                /* the snapped area's sign                    */
+} ew_corners;
+
+/* Positions are within +-2^(17 + S), S = EW_SUBPIXEL_BITS <= 8, so differences are
+ * within 2^26. */
+typedef struct ew_edge {
+    int32_t x;         /* first pixel at or right of the edge on the current row           */
+    int32_t step;      /* floor(dx / dy): what x grows by on each row, or by one more ...  */
+    int32_t remainder; /* ... whenever this, from -dy to -1, counts up to zero             */
+    int32_t rise;      /* dx - step dy, 0 <= rise < dy                                     */
+    int32_t dy;
+} ew_edge;
+
+/* Differences from corner 0, in one place for both kinds of set-up. */
+typedef struct ew_basis {
+    int32_t dx1, dy1, dx2, dy2; /* q20.12, |d| <= 2^30                                      */
+    int64_t area;               /* dx1 dy2 - dx2 dy1, |area| <= 2^61                        */
+    uint32_t reach;             /* the largest |d|                                          */
+    int32_t to_x, to_y;         /* from corner 0 to the pixel where planes stand, q20.12    */
+} ew_basis;
+
+/* Gradients of the weights of corners 1 and 2, per q20.12 unit times 2^shift / 4096. */
+typedef struct ew_weights {
+    int32_t x1, x2, y1, y2; /* |.| <= 2^30 */
+    int shift;              /* 26 to 38    */
+} ew_weights;
+
+/* What planes are made of: values of w' and of all attributes at corners 1 and 2, less those
+ * at corner 0. */
+typedef struct ew_differences {
+    int32_t d[EW_PLANES][2];
+} ew_differences;
+
+/* ---- spans (span.c) ---- */
+
+/* What is linear along a piece of a span, from its first pixel on. */
+typedef struct ew_linear {
+    uint32_t w, dw;       /* w' times 2^align                                            */
+    uint32_t u, du, v, dv; /* attributes likewise; on the affine rung they alone, with their
+                             fraction bits                                               */
+    int align;
+    uint32_t shade[3], dshade[3];
+} ew_linear;
+
+/* Attributes of a run's first pixel, with their fraction bits, and what they grow by. */
+typedef struct ew_attribute_run {
+    uint32_t u, du, v, dv;
+    uint32_t u_down, v_down; /* what they grow by to the next row, with mip chains only */
+    uint32_t shade[3], dshade[3];
+} ew_attribute_run;
+
+/* Where ew_fill_any goes on, and 1/z there. */
+typedef struct ew_position {
+    uint16_t x, y;
+    uint32_t w, dw;
+} ew_position;
+
+/* What the pixel loop of arch.h reads; its machine code knows the order. */
+typedef struct ew_pixel_loop {
+    uint32_t w, dw, high, low, dhigh, dlow;
+    const uint16_t *texels;
+    uint32_t mask, turn;
+    const uint16_t *end, *rest;
+} ew_pixel_loop;
+
+/* How a run's u and v become one texel number: span.c. */
+typedef struct ew_packing {
+    ew_pixel_loop loop;
+    uint16_t *colour, *depth; /* where the next pixel goes                                */
+    uint32_t low;             /* bits of v's texel                                        */
+    uint32_t u_base, v_base;
+    uint8_t log2_height, u_shift, v_shift, newton;
+    uint16_t x, y;            /* its position, for tests                                  */
+} ew_packing;
+
+/* ---- fills (fill.c, texture.c) ---- */
+
+/* A run: a piece of a span over which everything is linear. Values belong to its first
+ * pixel, steps lead to the next; sums wrap and are only meaningful inside the run. */
+typedef struct ew_run {
+    uint16_t x, y;         /* of the first pixel                                           */
+    uint32_t w, dw;        /* near/z, uq1.31                                               */
+    uint64_t u, du, v, dv; /* texels, q32.32; du and dv modulo the texture's period would do
+                              but for mip chains                                            */
+    uint64_t u_down, v_down; /* du/dy and dv/dy at the first pixel, q32.32 per pixel, with mip
+                                chains only: the level of EW_PIECE pixels comes from du, dv,
+                                u_down, v_down                                               */
+    int32_t shade[3], dshade[3]; /* red, green, blue, with EW_SHADED only: 2^24 is all of a channel.
+                                    Half a step, 2^15, is added already; what lies outside of
+                                    [0, 2^24] is clamped                                     */
+} ew_run;
+
+enum { EW_PIECE = 8 };
+
+/* A piece of a run on its way to the target. Channels have 12 bits. */
+typedef struct ew_piece {
+    uint16_t x, y;
+    int n;         /* pixels, at most EW_PIECE                                             */
+    uint8_t live;  /* bit i: pixel i is drawn                                              */
+    uint16_t colour[EW_PIECE][3];
+} ew_piece;
+
+typedef struct ew_axis {
+    uint64_t at, step; /* q32.32                                                           */
+    uint32_t period;   /* texels; 0: clamped                                               */
+    uint32_t size;     /* texels of the level                                              */
+} ew_axis;
+
+/* A level as it lies in memory, the position in it, and what to do with its colours. */
+typedef struct ew_sampler {
+    const struct ew_texture *texture;
+    const uint8_t *texels;
+    const uint8_t *mask; /* NULL: none                                                     */
+    ew_axis u, v;
+    uint32_t sum[3];   /* of a pixel's four texels                                         */
+    uint16_t row_bytes, mask_row_bytes; /* 4096 at most                                     */
+    uint16_t share;    /* of 256: how far they take the place of what the piece has        */
+    uint8_t log2_bits; /* of a texel                                                      */
+    uint8_t wide;      /* of ew_decode_565                                                */
+    uint8_t smooth;    /* bilinear                                                        */
+    uint8_t cuts;      /* EW_COLOUR_KEY, EW_ALPHA_MASK: by which this level leaves texels out */
+} ew_sampler;
+
+/* ---- all of it ---- */
+
+typedef struct ew_raster_work {
+    ew_triangle triangle;
+    ew_corners corners;
+    ew_edge edge[2]; /* left, right                                                       */
+    union {
+        struct { /* while planes are made */
+            ew_basis basis;
+            ew_weights weights;
+            ew_differences differences;
+            uint32_t w[3]; /* of the corners, scaled                                       */
+        } setup;
+        struct { /* while spans are drawn */
+            ew_linear linear;
+            union {
+                ew_packing packing;
+                struct {
+                    ew_attribute_run attributes;
+                    ew_position position;
+                    ew_run run;
+                    ew_piece piece;
+                    ew_sampler sampler;
+                } any;
+            } fill;
+        } span;
+    } now;
+} ew_raster_work;
+
+#endif
