@@ -82,7 +82,7 @@ int ew_row_mul_mat44(ew_row *out, const ew_row *a, const ew_mat44 *b)
     return row_combine(out, a, b->row, &b->row[3]);
 }
 
-void ew_row_from_q16_16(ew_row *row, ew_q16_16 a, ew_q16_16 b, ew_q16_16 c, ew_q16_16 d)
+EW_OWN_FRAME void ew_row_from_q16_16(ew_row *row, ew_q16_16 a, ew_q16_16 b, ew_q16_16 c, ew_q16_16 d)
 {
     int64_t sum[4];
     sum[0] = a, sum[1] = b, sum[2] = c, sum[3] = d;
@@ -183,15 +183,22 @@ int ew_mat34_from_trs(ew_mat34 *out, const int32_t t[3], int16_t t_exponent, con
     return EW_OK;
 }
 
+/* 0 0 -1 -2n */
+static EW_OWN_FRAME int depth_row(ew_row *out, ew_block near_z)
+{
+    int64_t sum[4];
+    sum[0] = sum[1] = 0;
+    sum[2] = -((int64_t)1 << 60);
+    sum[3] = -(int64_t)near_z.m * ((int64_t)1 << 30);
+    return row_normalise(out, sum, 0, near_z.e + 1);
+}
+
 int ew_mat44_perspective(ew_mat44 *out, const ew_projection *p)
 {
-    ew_block near_z = p->near_z;
+    const ew_block near_z = p->near_z;
     if (p->focal_x <= 0 || p->focal_y <= 0 || near_z.m <= 0) return EW_ERR_ARGUMENT;
     ew_row_from_q16_16(&out->row[0], p->focal_x, 0, 0, 0);
     ew_row_from_q16_16(&out->row[1], 0, p->focal_y, 0, 0);
     ew_row_from_q16_16(&out->row[3], 0, 0, -65536, 0);
-    int64_t sum[4] = { 0, 0, 0, 0 };
-    sum[2] = -((int64_t)1 << 60);
-    sum[3] = -(int64_t)near_z.m * ((int64_t)1 << 30);
-    return row_normalise(&out->row[2], sum, 0, near_z.e + 1);
+    return depth_row(&out->row[2], near_z);
 }

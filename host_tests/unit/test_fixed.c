@@ -281,6 +281,9 @@ static void products_of_matrices(void **state)
         in_place = b;
         ew_mat34_mul(&in_place, &a, &in_place);
         assert_memory_equal(in_place.row[0].m, c.row[0].m, sizeof c.row[0].m);
+        ew_row row = a.row[1];
+        assert_int_equal(ew_row_mul_mat34(&row, &row, &b), EW_OK);
+        assert_memory_equal(&row, &c.row[1], sizeof row);
     }
     ew_mat34 huge, kept;
     random_matrix(&huge, 0);

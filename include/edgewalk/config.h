@@ -98,8 +98,8 @@
 #define EW_ASSERT(condition) ((void)0)
 #endif
 
-/* A function that is not merged into its callers: frames of merged ones add up there, also for
- * chains of calls that never meet. */
+/* Marks a function that must not be inlined: its caller's frame would grow by what it needs, also
+ * below the caller's other calls. */
 #if defined(__GNUC__)
 #define EW_OWN_FRAME __attribute__((noinline))
 #else

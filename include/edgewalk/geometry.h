@@ -95,7 +95,7 @@ typedef struct ew_mesh {
     uint8_t uv_fraction_bits;       /* of the vertices' u and v, 0 to 12                     */
 } ew_mesh;
 
-/* The memory of the geometry layer: the caller's, about 1200 bytes. What is kept here takes no
+/* The memory of the geometry layer: the caller's, about 1100 bytes. What is kept here takes no
  * room on the stack while a triangle is drawn. */
 typedef struct ew_geometry {
     ew_raster *raster;
@@ -109,6 +109,7 @@ typedef struct ew_geometry {
         ew_projection projection;
         ew_viewport viewport;
         ew_mat34 node_view, model_view;
+        ew_screen_vertex *vertices;
         ew_mesh mesh;
     } scene;
 } ew_geometry;

@@ -69,7 +69,7 @@ void ew_scene_get_material(const ew_scene *scene, uint32_t i, ew_material *mater
 
 /* Node-to-world matrices of all nodes at time_ms, clamped to each track's keys.
  * `world` has room for as many matrices as there are nodes. Returns EW_OK or
- * EW_ERR_RANGE when a product of matrices leaves the number format. */
+ * EW_ERR_RANGE when a product of matrices leaves the number format; `world` is of no use then. */
 int ew_scene_pose(const ew_scene *scene, uint32_t time_ms, ew_mat34 *world);
 
 /* Draws the scene posed by ew_scene_pose with `camera` through `geometry` into its

@@ -72,7 +72,8 @@ static EW_OWN_FRAME void cut(ew_clip_vertex *out, const ew_clip_vertex *inner, i
 }
 
 /* Sutherland and Hodgman's step: `in` cut by one plane. Each plane adds one corner at most. */
-static EW_OWN_FRAME int clip_by(ew_clip_vertex *out, const ew_clip_vertex *in, int count, int plane, int64_t near_w)
+static EW_OWN_FRAME int clip_by(ew_clip_vertex *out, const ew_clip_vertex *in, int count, int plane,
+                                int64_t near_w)
 {
     int made = 0;
     for (int i = 0; i < count; i++) {

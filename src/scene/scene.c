@@ -372,7 +372,8 @@ typedef struct key_pair {
     uint32_t f;
 } key_pair;
 
-static EW_OWN_FRAME void find_keys(key_pair *keys, const ew_scene *scene, const uint8_t *track, uint32_t time_ms)
+static EW_OWN_FRAME void find_keys(key_pair *keys, const ew_scene *scene, const uint8_t *track,
+                                   uint32_t time_ms)
 {
     uint32_t first = u32_at(track), last = (uint32_t)u16_at(track + 4) - 1u, interval = u16_at(track + 6);
     uint32_t k = time_ms / interval, rest;
@@ -455,10 +456,10 @@ static EW_OWN_FRAME int use_material(const ew_scene *scene, uint32_t number, ew_
     return ew_raster_set_material(raster, &material);
 }
 
-/* Makes material, transform and mesh ready for primitive p, with its vertices on the screen. */
-static EW_OWN_FRAME int prepare_primitive(const ew_scene *scene, const uint8_t *p, ew_geometry *geometry,
-                                          ew_screen_vertex *scratch)
+/* Makes material, transform and mesh ready for a primitive, with its vertices on the screen. */
+static EW_OWN_FRAME int prepare_primitive(const ew_scene *scene, uint32_t number, ew_geometry *geometry)
 {
+    const uint8_t *p = record(scene, EW_SECTION_PRIM, number);
     ew_mat34 *const model_view = &geometry->scene.model_view;
     dequantise_at(p, model_view);
     int error = ew_mat34_mul(model_view, &geometry->scene.node_view, model_view);
@@ -469,12 +470,12 @@ static EW_OWN_FRAME int prepare_primitive(const ew_scene *scene, const uint8_t *
     if (error) return error;
     ew_mesh *const mesh = &geometry->scene.mesh;
     mesh->vertices = vertices_at(scene, p);
-    mesh->screen = scratch;
+    mesh->screen = geometry->scene.vertices;
     mesh->colours = NULL;
     mesh->indices = indices_at(scene, p);
     mesh->index_count = u32_at(p + 12);
     mesh->uv_fraction_bits = p[36];
-    ew_transform_vertices(&geometry->transform, mesh->vertices, u16_at(p + 4), scratch);
+    ew_transform_vertices(&geometry->transform, mesh->vertices, u16_at(p + 4), geometry->scene.vertices);
     return EW_OK;
 }
 
@@ -484,17 +485,16 @@ int32_t ew_scene_draw(const ew_scene *scene, const ew_scene_camera *camera, cons
     int error = set_projection(&geometry->scene.projection, camera, viewport);
     if (error) return error;
     geometry->scene.viewport = *viewport;
+    geometry->scene.vertices = scratch;
     int32_t drawn = 0;
     for (uint32_t i = 0; i < scene->section[EW_SECTION_NODE].count; i++) {
         const uint8_t *node = record(scene, EW_SECTION_NODE, i);
-        uint32_t number = u16_at(node + 4);
-        const uint32_t end = number + u16_at(node + 6);
-        if (number == end) continue;
+        uint32_t number = u16_at(node + 4), left = u16_at(node + 6);
+        if (!left) continue;
         error = ew_mat34_mul(&geometry->scene.node_view, &camera->view, &world[i]);
         if (error) return error;
-        for (; number < end; number++) {
-            const uint8_t *p = record(scene, EW_SECTION_PRIM, number);
-            error = prepare_primitive(scene, p, geometry, scratch);
+        for (; left; left--) {
+            error = prepare_primitive(scene, number++, geometry);
             if (error) return error;
             int32_t result = ew_draw_triangles(geometry, &geometry->scene.mesh);
             if (result < 0) return result;
