@@ -180,7 +180,10 @@ typedef struct ew_sampler {
     const uint8_t *texels;
     const uint8_t *mask; /* NULL: none                                                     */
     ew_axis u, v;
-    uint32_t sum[3];   /* of a pixel's four texels                                         */
+    uint32_t sum[3];   /* of a pixel's texels, by their weights                             */
+    uint8_t weight[4];
+    uint16_t texel[3]; /* the colour of a texel, then of the pixel                          */
+    uint16_t level, next_share; /* the level, and the share of the one behind it            */
     uint16_t row_bytes, mask_row_bytes; /* 4096 at most                                     */
     uint16_t share;    /* of 256: how far they take the place of what the piece has        */
     uint8_t log2_bits; /* of a texel                                                      */

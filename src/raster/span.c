@@ -525,21 +525,16 @@ EW_ALWAYS_INLINE void steps_start(ew_packing *k, ew_linear *s, const ew_triangle
     k->loop.dw = depth_step(s->dw, t->w_lead);
 }
 
-/* A span that is too long for steps of 32 bits. */
-EW_NOINLINE void pieces_of_texture(ew_raster *raster, int32_t x, int32_t n)
+/* work.linear and the packing's 1/z for the next piece of a span that is too long for steps of
+ * 32 bits. Returns its length. */
+EW_NOINLINE int32_t next_of_texture(ew_raster *raster, int32_t x, int32_t n)
 {
-    const ew_triangle *t = &raster->work.triangle;
+    const ew_linear *l = &raster->work.now.span.linear;
     ew_packing *k = &raster->work.now.span.fill.packing;
-    ew_linear *l = &raster->work.now.span.linear;
-    while (n > 0) {
-        const int32_t m = next_of_wide(raster, x, n);
-        k->loop.w = depth_of(l->w, t->w_lead + l->align);
-        k->loop.dw = depth_step(l->dw, t->w_lead + l->align);
-        piece_of_texture(k, t, l, m);
-        x += m;
-        n -= m;
-    }
-    steps_start(k, l, t, 1);
+    n = next_of_wide(raster, x, n);
+    const int down = raster->work.triangle.w_lead + l->align;
+    k->loop.w = depth_of(l->w, down), k->loop.dw = depth_step(l->dw, down);
+    return n;
 }
 
 /* Triangles with a texture, depth and nothing else, on the affine rung or in runs: ew_walk_rows
@@ -572,8 +567,15 @@ EW_ALWAYS_INLINE int rows_of_texture(ew_raster *raster, int32_t row, int32_t end
                 narrow_start(s, t, x);
             }
             k->loop.w = depth_of(s->w, t->w_lead);
-            if (!whole) pieces_of_texture(raster, x, n);
-            else if (t->rung == EW_RUNG_AFFINE) fill_textured(k, s->u, s->du, s->v, s->dv, n);
+            if (!whole) {
+                while (n > 0) {
+                    const int32_t m = next_of_texture(raster, x, n);
+                    piece_of_texture(k, t, s, m);
+                    x += m;
+                    n -= m;
+                }
+                steps_start(k, s, t, wide);
+            } else if (t->rung == EW_RUNG_AFFINE) fill_textured(k, s->u, s->du, s->v, s->dv, n);
             else if (one_run_suffices(t, s->w, s->dw, n)) run_of_texture(k, s, (uint32_t)n >> 1, n);
             else piece_of_texture(k, t, s, n);
             reached = 1;
