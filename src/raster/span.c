@@ -342,6 +342,9 @@ EW_NOINLINE int32_t next_of_any(ew_raster *raster, int32_t n)
     const ew_triangle *t = &raster->work.triangle;
     ew_linear *l = &raster->work.now.span.linear;
     ew_attribute_run *run = &raster->work.now.span.fill.any.attributes;
+    EW_KEEP_ORDER(t);
+    EW_KEEP_ORDER(l);
+    EW_KEEP_ORDER(run);
     if (t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_CONSTANT) {
         run_of_affine(run, t, l);
         return n;
@@ -416,6 +419,8 @@ EW_NOINLINE void start_narrow(ew_raster *raster, int32_t x)
     const ew_triangle *t = &raster->work.triangle;
     const ew_plane32 *p = &t->plane.narrow[EW_PLANE_SHADE];
     ew_linear *l = &raster->work.now.span.linear;
+    EW_KEEP_ORDER(t);
+    EW_KEEP_ORDER(l);
     l->align = 0;
     l->dw = t->plane.narrow[EW_PLANE_W].dx;
     l->du = t->plane.narrow[EW_PLANE_U].dx;
@@ -481,6 +486,8 @@ EW_NOINLINE int32_t next_of_wide(ew_raster *raster, int32_t x, int32_t n)
     const ew_triangle *t = &raster->work.triangle;
     const ew_plane64 *p = t->plane.wide;
     ew_linear *l = &raster->work.now.span.linear;
+    EW_KEEP_ORDER(t);
+    EW_KEEP_ORDER(l);
     x -= t->column;
     const uint64_t w = p[EW_PLANE_W].row + ew_wrap_mul64(p[EW_PLANE_W].dx, x);
     n = piece_length(t, w, n, &l->align);
@@ -549,6 +556,9 @@ EW_ALWAYS_INLINE int rows_of_texture(ew_raster *raster, int32_t row, int32_t end
     ew_linear *s = &raster->work.now.span.linear;
     ew_packing *k = &raster->work.now.span.fill.packing;
     int reached = 0;
+    EW_KEEP_ORDER(t);
+    EW_KEEP_ORDER(s);
+    EW_KEEP_ORDER(k);
     packing_init(k, raster, t);
     steps_start(k, s, t, wide);
     for (; row < end; row++) {
