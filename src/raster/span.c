@@ -385,11 +385,13 @@ EW_NOINLINE int start_piece(ew_raster *raster, int32_t x, int32_t y, int32_t n)
 {
     const ew_triangle *t = &raster->work.triangle;
     const ew_linear *l = &raster->work.now.span.linear;
+    EW_KEEP_ORDER(t);
     const int down = t->w_lead + l->align;
     const uint32_t w = depth_of(l->w, down), dw = depth_step(l->dw, down);
     if (is_plain(t, w, dw, n)) {
         const size_t offset = (size_t)y * raster->target.stride + (size_t)x;
         ew_packing *k = &raster->work.now.span.fill.packing;
+        EW_KEEP_ORDER(k);
         packing_init(k, raster, t);
         k->loop.w = w, k->loop.dw = dw;
         k->colour = (uint16_t *)raster->target.colour + offset;
