@@ -194,6 +194,21 @@ typedef struct ew_sampler {
 
 /* ---- all of it ---- */
 
+/* While spans are drawn. */
+typedef struct ew_span_work {
+    ew_linear linear; /* and the packing: near each other, which short offsets reach       */
+    union {
+        ew_packing packing;
+        struct {
+            ew_attribute_run attributes;
+            ew_position position;
+            ew_run run;
+            ew_piece piece;
+            ew_sampler sampler;
+        } any;
+    } fill;
+} ew_span_work;
+
 typedef struct ew_raster_work {
     ew_triangle triangle;
     ew_corners corners;
@@ -205,19 +220,7 @@ typedef struct ew_raster_work {
             ew_differences differences;
             uint32_t w[3]; /* of the corners, scaled                                       */
         } setup;
-        struct { /* while spans are drawn */
-            ew_linear linear;
-            union {
-                ew_packing packing;
-                struct {
-                    ew_attribute_run attributes;
-                    ew_position position;
-                    ew_run run;
-                    ew_piece piece;
-                    ew_sampler sampler;
-                } any;
-            } fill;
-        } span;
+        ew_span_work span;
     } now;
 } ew_raster_work;
 

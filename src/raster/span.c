@@ -555,12 +555,12 @@ EW_ALWAYS_INLINE int rows_of_texture(ew_raster *raster, int32_t row, int32_t end
     const size_t offset = (size_t)row * raster->target.stride;
     uint16_t *colour = (uint16_t *)raster->target.colour + offset, *depth = raster->target.depth + offset;
     ew_edge l = raster->work.edge[0], r = raster->work.edge[1]; /* or they would be read and written around each span */
-    ew_linear *s = &raster->work.now.span.linear;
-    ew_packing *k = &raster->work.now.span.fill.packing;
+    ew_span_work *span = &raster->work.now.span;
     int reached = 0;
-    EW_KEEP_ORDER(t);
-    EW_KEEP_ORDER(s);
-    EW_KEEP_ORDER(k);
+    EW_KEEP_ORDER(t); /* bases of their own, with short offsets from them */
+    EW_KEEP_ORDER(span);
+    ew_linear *s = &span->linear;
+    ew_packing *k = &span->fill.packing;
     packing_init(k, raster, t);
     steps_start(k, s, t, wide);
     for (; row < end; row++) {
