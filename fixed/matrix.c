@@ -30,50 +30,56 @@ static int normalise(int32_t *m, int16_t *exponent, const int64_t *sum, int coun
 }
 
 /* A row from sums; the three in units of 2^(e - 60), the fourth of 2^(e_last - 60). */
-static int row_normalise(ew_row *out, const int64_t sum[4], int32_t e, int32_t e_last)
+static EW_OWN_FRAME int row_normalise(ew_row *out, const int64_t sum[4], int32_t e, int32_t e_last)
 {
     int error = normalise(out->m, &out->e, sum, 3, e);
     return error ? error : normalise(out->m + 3, &out->e_last, sum + 3, 1, e_last);
 }
 
-/* A product's part: a[k] times elements first .. first + count - 1 of b[k], summed over k.
- * Each b[k] gives the elements' common exponent; where all of them are 0 it does not
- * count. Returns the exponent of the sums' unit, 2^(e - 60). */
-static int32_t sum_products(int64_t *sum, const ew_row *a, const ew_row *const b[4], int first, int count)
+/* A product's part: a[k] times elements first .. first + count - 1 of row k, b[k] or `last`,
+ * summed over k. Each row gives the elements' common exponent; where all of them are 0 it does
+ * not count. Returns the exponent of the sums' unit, 2^(e - 60). */
+static EW_OWN_FRAME int32_t sum_products(int64_t *sum, const ew_row *a, const ew_row b[3], const ew_row *last,
+                                         int first, int count)
 {
     int32_t e[4], top = 0;
     int any = 0;
     for (int k = 0; k < 4; k++) {
+        const ew_row *row = k < 3 ? &b[k] : last;
         uint32_t bits = 0;
-        for (int j = first; j < first + count; j++) bits |= (uint32_t)b[k]->m[j];
-        e[k] = (k < 3 ? a->e : a->e_last) + (first < 3 ? b[k]->e : b[k]->e_last);
+        for (int j = first; j < first + count; j++) bits |= (uint32_t)row->m[j];
+        e[k] = (k < 3 ? a->e : a->e_last) + (first < 3 ? row->e : row->e_last);
         if (a->m[k] != 0 && bits != 0 && (!any || e[k] > top)) top = e[k], any = 1;
     }
     for (int j = 0; j < count; j++) {
         sum[j] = 0;
         for (int k = 0; k < 4; k++) {
             /* four products of at most 2^60; what is shifted out is below the last bit */
-            int64_t product = ew_mul_s32(a->m[k], b[k]->m[first + j]);
+            int64_t product = ew_mul_s32(a->m[k], (k < 3 ? &b[k] : last)->m[first + j]);
             if (product != 0 && top - e[k] <= 62) sum[j] += EW_ASR(product, top - e[k]);
         }
     }
     return top;
 }
 
-/* out = a (b[0] b[1] b[2] b[3]). out may be a. */
-static int row_combine(ew_row *out, const ew_row *a, const ew_row *const b[4])
+/* out = a (b[0] b[1] b[2] last). out may be a. */
+static EW_OWN_FRAME int row_combine(ew_row *out, const ew_row *a, const ew_row b[3], const ew_row *last)
 {
     int64_t sum[4];
-    int32_t e = sum_products(sum, a, b, 0, 3), e_last = sum_products(sum + 3, a, b, 3, 1);
+    int32_t e = sum_products(sum, a, b, last, 0, 3), e_last = sum_products(sum + 3, a, b, last, 3, 1);
     return row_normalise(out, sum, e, e_last);
 }
 
 static const ew_row last_affine_row = { { 0, 0, 0, (int32_t)1 << 29 }, 0, 1 };
 
-static void rows_of(const ew_row *rows[4], const ew_row *first_three, const ew_row *last)
+int ew_row_mul_mat34(ew_row *out, const ew_row *a, const ew_mat34 *b)
 {
-    for (int k = 0; k < 3; k++) rows[k] = &first_three[k];
-    rows[3] = last;
+    return row_combine(out, a, b->row, &last_affine_row);
+}
+
+int ew_row_mul_mat44(ew_row *out, const ew_row *a, const ew_mat44 *b)
+{
+    return row_combine(out, a, b->row, &b->row[3]);
 }
 
 void ew_row_from_q16_16(ew_row *row, ew_q16_16 a, ew_q16_16 b, ew_q16_16 c, ew_q16_16 d)
@@ -93,10 +99,8 @@ void ew_mat34_identity(ew_mat34 *out)
 int ew_mat34_mul(ew_mat34 *out, const ew_mat34 *a, const ew_mat34 *b)
 {
     ew_mat34 r;
-    const ew_row *rows[4];
-    rows_of(rows, b->row, &last_affine_row);
     for (int i = 0; i < 3; i++) {
-        int error = row_combine(&r.row[i], &a->row[i], rows);
+        int error = ew_row_mul_mat34(&r.row[i], &a->row[i], b);
         if (error) return error;
     }
     *out = r;
@@ -106,10 +110,8 @@ int ew_mat34_mul(ew_mat34 *out, const ew_mat34 *a, const ew_mat34 *b)
 int ew_mat44_mul_mat34(ew_mat44 *out, const ew_mat44 *a, const ew_mat34 *b)
 {
     ew_mat44 r;
-    const ew_row *rows[4];
-    rows_of(rows, b->row, &last_affine_row);
     for (int i = 0; i < 4; i++) {
-        int error = row_combine(&r.row[i], &a->row[i], rows);
+        int error = ew_row_mul_mat34(&r.row[i], &a->row[i], b);
         if (error) return error;
     }
     *out = r;
@@ -119,10 +121,8 @@ int ew_mat44_mul_mat34(ew_mat44 *out, const ew_mat44 *a, const ew_mat34 *b)
 int ew_mat44_mul(ew_mat44 *out, const ew_mat44 *a, const ew_mat44 *b)
 {
     ew_mat44 r;
-    const ew_row *rows[4];
-    rows_of(rows, b->row, &b->row[3]);
     for (int i = 0; i < 4; i++) {
-        int error = row_combine(&r.row[i], &a->row[i], rows);
+        int error = ew_row_mul_mat44(&r.row[i], &a->row[i], b);
         if (error) return error;
     }
     *out = r;
@@ -131,7 +131,7 @@ int ew_mat44_mul(ew_mat44 *out, const ew_mat44 *a, const ew_mat44 *b)
 
 /* The rotation matrix of a quaternion of any length but 0, without a square root: with
  * n = |q|^2 the elements are 1 - 2 (y^2 + z^2) / n, 2 (x y - w z) / n and so on. */
-static int rotation_rows(int32_t m[3][3], const ew_quat *q)
+static EW_OWN_FRAME int rotation_rows(int32_t m[3][3], const ew_quat *q)
 {
     int32_t c[4];
     c[0] = q->x, c[1] = q->y, c[2] = q->z, c[3] = q->w;

@@ -61,7 +61,7 @@ int ew_quat_normalise(ew_quat *out, const ew_quat *a)
 }
 
 /* In units of 2^-60; both of length 1. */
-static int64_t dot(const ew_quat *a, const ew_quat *b)
+static EW_OWN_FRAME int64_t dot(const ew_quat *a, const ew_quat *b)
 {
     return ew_mul_s32(a->x, b->x) + ew_mul_s32(a->y, b->y) + ew_mul_s32(a->z, b->z) + ew_mul_s32(a->w, b->w);
 }
@@ -105,6 +105,16 @@ static int32_t blend(int32_t a, int32_t b, uint32_t ka, uint32_t kb)
     return (int32_t)EW_ASR(sum + ((int64_t)1 << 30), 31);
 }
 
+/* For 0 < t < 2^31 and an arc of at most 45 degrees. */
+static EW_OWN_FRAME void along_arc(ew_quat *out, const ew_quat *from, const ew_quat *to, uint32_t t)
+{
+    const uint32_t y = versine(from, to), ka = share(0u - (t << 1), y), kb = share(t << 1, y);
+    out->x = blend(from->x, to->x, ka, kb);
+    out->y = blend(from->y, to->y, ka, kb);
+    out->z = blend(from->z, to->z, ka, kb);
+    out->w = blend(from->w, to->w, ka, kb);
+}
+
 int ew_quat_slerp(ew_quat *out, const ew_quat *a, const ew_quat *b, uint32_t t)
 {
     EW_ASSERT(t <= UINT32_C(0x80000000));
@@ -114,25 +124,20 @@ int ew_quat_slerp(ew_quat *out, const ew_quat *a, const ew_quat *b, uint32_t t)
     if (error) return error;
     if (dot(&from, &to) < 0) to = negated(&to);
     const uint32_t forty_five = UINT32_C(1257966797); /* 2^32 (1 - cos 45 degrees) */
-    uint32_t y = versine(&from, &to);
-    if (t > 0 && t < UINT32_C(0x80000000) && y > forty_five) {
+    if (t > 0 && t < UINT32_C(0x80000000) && versine(&from, &to) > forty_five) {
         /* components below 2 cos(45 degrees / 2) in magnitude: the sums fit */
         ew_quat middle = { from.x + to.x, from.y + to.y, from.z + to.z, from.w + to.w };
         (void)ew_quat_normalise(&middle, &middle); /* at least sqrt 2 long */
         if (t < UINT32_C(0x40000000)) to = middle;
         else from = middle;
         t = (t << 1) & UINT32_C(0x7FFFFFFF);
-        y = versine(&from, &to);
     }
     if (t == 0) {
         *out = from;
     } else if (t == UINT32_C(0x80000000)) {
         *out = to;
     } else {
-        uint32_t ka = share(0u - (t << 1), y), kb = share(t << 1, y);
-        ew_quat r = { blend(from.x, to.x, ka, kb), blend(from.y, to.y, ka, kb), blend(from.z, to.z, ka, kb),
-                      blend(from.w, to.w, ka, kb) };
-        *out = r;
+        along_arc(out, &from, &to, t);
     }
     return EW_OK;
 }

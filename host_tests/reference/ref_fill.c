@@ -6,7 +6,8 @@ typedef __int128 wide;
 
 /* ---- whole numbers ---- */
 
-static wide floor_div(wide a, wide b) { return a >= 0 ? a / b : -((-a + b - 1) / b); }
+/* b > 0 */
+static wide floor_div(wide a, wide b) { return a >= 0 ? a / b : -((-a + b - 1) / b); } /* NOLINT(clang-analyzer-core.DivideZero) */
 static wide floor_mod(wide a, wide b) { return a - b * floor_div(a, b); }
 static int at_least(int a, int least) { return a < least ? least : a; }
 static int at_most(int a, int most) { return a > most ? most : a; }

@@ -195,6 +195,47 @@ static void far_triangles_of_wide_pictures(void **state)
     }
 }
 
+/* Gouraud shading on a grey target: each value within those of the exact shade over the disc,
+ * widened by the rounding of 256 shades and of the target's 255 steps. */
+static void shades_keep_the_promise(void **state)
+{
+    (void)state;
+    static uint8_t grey[W * H];
+    static uint16_t far[W * H];
+    const ew_target grey_target = { .colour = grey, .depth = far, .width = W, .height = H, .stride = W, .format = EW_TARGET_GREY8 };
+    const uint16_t tolerances[4] = { 0, 1, 4, 16 };
+    long fragments = 0, curved = 0;
+    for (int n = 0; n < 4000; n++) {
+        const ew_material material = { .colour = 0xFFFF, .tolerance = tolerances[n & 3], .flags = EW_DOUBLE_SIDED | EW_SHADED };
+        int corner_shade[3];
+        assert_int_equal(ew_raster_init(&raster, &grey_target), EW_OK);
+        ew_raster_clear(&raster, 0);
+        assert_int_equal(ew_raster_set_material(&raster, &material), EW_OK);
+        for (int i = 0; i < 3; i++) {
+            uint8_t c = (uint8_t)(n % 7 == i ? 255 * (int)(test_random() & 1) : (int)(test_random() & 255));
+            corner_shade[i] = c + (c >> 7); /* 256 is all */
+            now.v[i] = corner(uniform(-20, 84), uniform(-20, 68), 0.9 * pow(10, uniform(-1.5, 0)), corner_shade[i], 0);
+            now.v[i].colour = (ew_colour888){ c, c, c };
+        }
+        assert_true(ew_raster_triangle(&raster, &now.v[0], &now.v[1], &now.v[2]) >= 0);
+        double radius = tolerances[n & 3] / 16.0 + 1.0 / 256;
+        for (int p = 0; p < W * H; p++) {
+            if (!far[p]) continue;
+            double low = HUGE_VAL, high = -HUGE_VAL, u, v;
+            for (int k = 0; k <= 16; k++) {
+                double r = k < 16 ? radius : 0;
+                exact(p % W + 0.5 + r * cos(k * acos(-1.0) / 8), p / W + 0.5 + r * sin(k * acos(-1.0) / 8), &u, &v);
+                low = fmin(low, u), high = fmax(high, u);
+            }
+            test_context("triangle %d pixel %d %d: %d, exact %.3f to %.3f of 256", n, p % W, p / W, grey[p], low, high);
+            assert_true(grey[p] <= high + 0.6 && grey[p] >= fmin(low, 256) - 1.6);
+            fragments++;
+            curved += high - low < 1;
+        }
+    }
+    assert_true(fragments > 500000 && curved > 100000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -202,6 +243,7 @@ int main(void)
         TEST(far_corners_keep_the_promise),
         TEST(the_affine_bound_holds),
         TEST(far_triangles_of_wide_pictures),
+        TEST(shades_keep_the_promise),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

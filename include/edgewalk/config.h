@@ -98,6 +98,14 @@
 #define EW_ASSERT(condition) ((void)0)
 #endif
 
+/* A function that is not merged into its callers: frames of merged ones add up there, also for
+ * chains of calls that never meet. */
+#if defined(__GNUC__)
+#define EW_OWN_FRAME __attribute__((noinline))
+#else
+#define EW_OWN_FRAME
+#endif
+
 /* Called for every fragment, before the depth test, when a build defines EW_TRACE as
  * 1 (the host's accuracy tests do). 0, the default, leaves no trace in the code. */
 #ifndef EW_TRACE

@@ -256,6 +256,9 @@ int ew_mat34_mul(ew_mat34 *out, const ew_mat34 *a, const ew_mat34 *b);
 /* The same for a 4 x 4 matrix times an affine one, and for two 4 x 4 ones. */
 int ew_mat44_mul_mat34(ew_mat44 *out, const ew_mat44 *a, const ew_mat34 *b);
 int ew_mat44_mul(ew_mat44 *out, const ew_mat44 *a, const ew_mat44 *b);
+/* One row of these: a row times a matrix. `out` may be a, but no row of b. */
+int ew_row_mul_mat34(ew_row *out, const ew_row *a, const ew_mat34 *b);
+int ew_row_mul_mat44(ew_row *out, const ew_row *a, const ew_mat44 *b);
 /* translation * rotation * scale: t and s are value m * 2^(e - 30). The quaternion's
  * length is divided out (it may be off by a factor of two); the null quaternion gives
  * EW_ERR_ARGUMENT. Errors as ew_mat34_mul. */

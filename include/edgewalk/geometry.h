@@ -60,7 +60,7 @@ typedef struct ew_transform {
 /* Makes the transform for one model; `model_view` takes vertices as q1.15 to view space.
  * Returns EW_OK; EW_ERR_ARGUMENT for a projection or a viewport outside of its ranges;
  * EW_ERR_RANGE when the model's size or distance is more than about 2^30 times the near
- * distance. */
+ * distance. After an error *transform is of no use. */
 int ew_transform_set(ew_transform *transform, const ew_projection *projection,
                      const ew_mat34 *model_view, const ew_viewport *viewport);
 
@@ -85,17 +85,6 @@ typedef struct ew_clip_vertex {
 
 enum { EW_CLIP_MAX = 8 }; /* a triangle cut by five planes */
 
-/* The memory of the geometry layer: the caller's, about 900 bytes. */
-typedef struct ew_geometry {
-    ew_raster *raster;
-    ew_transform transform;
-    ew_raster_vertex corner[3]; /* the triangle at hand                                    */
-    ew_clip_vertex polygon[2][EW_CLIP_MAX];
-} ew_geometry;
-
-/* Points the layer at a raster context. */
-void ew_geometry_init(ew_geometry *geometry, ew_raster *raster);
-
 /* Triangles of one material. Nothing is copied. */
 typedef struct ew_mesh {
     const ew_vertex16 *vertices;
@@ -105,6 +94,27 @@ typedef struct ew_mesh {
     uint32_t index_count;           /* a multiple of three                                  */
     uint8_t uv_fraction_bits;       /* of the vertices' u and v, 0 to 12                     */
 } ew_mesh;
+
+/* The memory of the geometry layer: the caller's, about 1200 bytes. What is kept here takes no
+ * room on the stack while a triangle is drawn. */
+typedef struct ew_geometry {
+    ew_raster *raster;
+    ew_transform transform;
+    /* What follows holds nothing between two calls. */
+    ew_raster_vertex corner[3]; /* the triangle at hand                                    */
+    ew_clip_vertex polygon[2][EW_CLIP_MAX];
+    const ew_clip_vertex *clipped; /* the one of the two with the clipper's result         */
+    int64_t clip_near_w;        /* the near distance in the clipper's unit                 */
+    struct {                    /* of ew_scene_draw                                        */
+        ew_projection projection;
+        ew_viewport viewport;
+        ew_mat34 node_view, model_view;
+        ew_mesh mesh;
+    } scene;
+} ew_geometry;
+
+/* Points the layer at a raster context. */
+void ew_geometry_init(ew_geometry *geometry, ew_raster *raster);
 
 /* Draws a mesh with the raster's material and geometry->transform, the one that mesh->screen
  * was made with. That the indices are in range is the caller's promise; ew_scene_open checks

@@ -22,18 +22,16 @@ static int64_t shifted(int64_t a, int32_t down)
     return down >= 0 ? EW_ASR(a, down) : a * ((int64_t)1 << -down);
 }
 
-static clip_unit choose_unit(const ew_transform *t)
+static EW_OWN_FRAME void choose_unit(clip_unit *unit, const ew_transform *t)
 {
     int32_t e = t->w.e + 3;
     if (t->x.e - 14 > e) e = t->x.e - 14;
     if (t->y.e - 14 > e) e = t->y.e - 14;
-    clip_unit unit;
-    unit.down_x = e - t->x.e;
-    unit.down_y = e - t->y.e;
-    unit.down_w = e - t->w.e;
-    unit.near_w = shifted(t->near_w, unit.down_w);
-    if (unit.near_w < 1) unit.near_w = 1;
-    return unit;
+    unit->down_x = e - t->x.e;
+    unit->down_y = e - t->y.e;
+    unit->down_w = e - t->w.e;
+    unit->near_w = shifted(t->near_w, unit->down_w);
+    if (unit->near_w < 1) unit->near_w = 1;
 }
 
 /* A little inside of EW_GUARD_PX: a cut corner is off by less than a pixel. */
@@ -57,7 +55,7 @@ static int64_t distance(const ew_clip_vertex *v, int plane, int64_t near_w)
     return d < 0 && v->corner >= 0 ? 0 : d;
 }
 
-static void cut(ew_clip_vertex *out, const ew_clip_vertex *inner, int64_t d_inner,
+static EW_OWN_FRAME void cut(ew_clip_vertex *out, const ew_clip_vertex *inner, int64_t d_inner,
                 const ew_clip_vertex *outer, int64_t d_outer)
 {
     uint64_t f = ew_fraction64((uint64_t)d_inner, (uint64_t)d_inner + ew_abs64(d_outer));
@@ -74,7 +72,7 @@ static void cut(ew_clip_vertex *out, const ew_clip_vertex *inner, int64_t d_inne
 }
 
 /* Sutherland and Hodgman's step: `in` cut by one plane. Each plane adds one corner at most. */
-static int clip_by(ew_clip_vertex *out, const ew_clip_vertex *in, int count, int plane, int64_t near_w)
+static EW_OWN_FRAME int clip_by(ew_clip_vertex *out, const ew_clip_vertex *in, int count, int plane, int64_t near_w)
 {
     int made = 0;
     for (int i = 0; i < count; i++) {
@@ -90,7 +88,7 @@ static int clip_by(ew_clip_vertex *out, const ew_clip_vertex *in, int count, int
     return made;
 }
 
-static int leaves_guard(const ew_clip_vertex *polygon, int count)
+static EW_OWN_FRAME int leaves_guard(const ew_clip_vertex *polygon, int count)
 {
     for (int i = 0; i < count; i++) {
         for (int plane = PLANE_LEFT; plane < PLANE_COUNT; plane++) {
@@ -109,7 +107,7 @@ static ew_q20_12 within_guard(ew_q20_12 a)
 }
 
 /* The homogeneous corners of a triangle, in the clipper's unit. */
-static void polygon_from(ew_clip_vertex polygon[3], const clip_unit *unit, const ew_transform *t,
+static EW_OWN_FRAME void polygon_from(ew_clip_vertex polygon[3], const clip_unit *unit, const ew_transform *t,
                          const ew_mesh *mesh, const uint16_t index[3])
 {
     const int32_t uv_unit = (int32_t)1 << (12 - mesh->uv_fraction_bits);
@@ -130,17 +128,20 @@ static void polygon_from(ew_clip_vertex polygon[3], const clip_unit *unit, const
     }
 }
 
-/* A corner of the clipped polygon, for the raster. `index` are its triangle's vertices. */
-static void corner_from(ew_raster_vertex *out, const ew_clip_vertex *p, const ew_transform *t, int64_t near_w,
-                        const ew_mesh *mesh, const uint16_t index[3])
+/* Corner i of the clipped polygon to its place in the fan: g->corner. `index` are its triangle's
+ * vertices. */
+static EW_OWN_FRAME void fan_corner(ew_geometry *g, int i, const ew_mesh *mesh, const uint16_t index[3])
 {
+    const ew_clip_vertex *p = &g->clipped[i];
+    ew_raster_vertex *out = &g->corner[i < 2 ? i : 2];
     ew_screen_vertex made;
+    if (i > 2) g->corner[1] = g->corner[2];
     if (p->corner >= 0) {
         made = mesh->screen[index[p->corner]];
     } else {
         ew_homogeneous_vertex h;
         h.x = p->x, h.y = p->y, h.w = p->w;
-        ew_project(&made, t, &h, 0, 0, near_w);
+        ew_project(&made, &g->transform, &h, 0, 0, g->clip_near_w);
         made.x = within_guard(made.x);
         made.y = within_guard(made.y);
     }
@@ -154,30 +155,37 @@ static void corner_from(ew_raster_vertex *out, const ew_clip_vertex *p, const ew
     out->colour.b = (uint8_t)((p->colour[2] + 128u) >> 8);
 }
 
-int ew_draw_clipped(ew_geometry *g, const ew_mesh *mesh, const uint16_t index[3])
+/* Leaves the clipped polygon in g->clipped and returns the number of its corners, below 3 when
+ * nothing is left. */
+static EW_OWN_FRAME int clip(ew_geometry *g, const ew_mesh *mesh, const uint16_t index[3])
 {
-    clip_unit unit = choose_unit(&g->transform);
+    clip_unit unit;
+    choose_unit(&unit, &g->transform);
     ew_clip_vertex *polygon = g->polygon[0], *other = g->polygon[1];
     polygon_from(polygon, &unit, &g->transform, mesh, index);
     int count = 3;
-    for (int plane = PLANE_NEAR; plane < PLANE_COUNT; plane++) {
+    for (int plane = PLANE_NEAR; plane < PLANE_COUNT && count >= 3; plane++) {
         if (plane == PLANE_LEFT && !leaves_guard(polygon, count)) break;
         count = clip_by(other, polygon, count, plane, unit.near_w);
-        if (count < 3) return 0;
         ew_clip_vertex *swap = polygon;
         polygon = other;
         other = swap;
     }
+    g->clipped = polygon;
+    g->clip_near_w = unit.near_w;
+    return count;
+}
 
-    ew_raster_vertex *const fan = g->corner;
-    int drawn = 0;
+int ew_draw_clipped(ew_geometry *g, const ew_mesh *mesh, const uint16_t index[3])
+{
+    int count = clip(g, mesh, index), drawn = 0;
+    if (count < 3) return 0;
     for (int i = 0; i < count; i++) {
-        corner_from(&fan[i < 2 ? i : 2], &polygon[i], &g->transform, unit.near_w, mesh, index);
+        fan_corner(g, i, mesh, index);
         if (i < 2) continue;
-        int result = ew_raster_triangle_in_range(g->raster, &fan[0], &fan[1], &fan[2]);
+        int result = ew_raster_triangle_in_range(g->raster, &g->corner[0], &g->corner[1], &g->corner[2]);
         if (result < 0) return result;
         drawn |= result;
-        fan[1] = fan[2];
     }
     return drawn;
 }

@@ -12,8 +12,9 @@ static inline int faces_the_eye(const ew_screen_vertex *a, const ew_screen_verte
     return ew_product_less(dx1, dy2, dx2, dy1); /* |d| <= 2^26 */
 }
 
-/* Without colours in the mesh, the corners keep those that they have: white. */
-static int draw_whole(ew_geometry *geometry, const ew_mesh *mesh, const uint16_t index[3])
+/* The triangle at hand is that of three vertices on the screen. Without colours in the mesh, the
+ * corners keep those that they have: white. */
+static EW_OWN_FRAME void take_corners(ew_geometry *geometry, const ew_mesh *mesh, const uint16_t index[3])
 {
     ew_raster_vertex *const v = geometry->corner;
     const int32_t uv_unit = (int32_t)1 << (12 - mesh->uv_fraction_bits);
@@ -27,7 +28,6 @@ static int draw_whole(ew_geometry *geometry, const ew_mesh *mesh, const uint16_t
         v[k].v = corner->v * uv_unit;
         if (mesh->colours) v[k].colour = mesh->colours[index[k]];
     }
-    return ew_raster_triangle_in_range(geometry->raster, &v[0], &v[1], &v[2]);
 }
 
 void ew_geometry_init(ew_geometry *geometry, ew_raster *raster) { geometry->raster = raster; }
@@ -51,7 +51,9 @@ int32_t ew_draw_triangles(ew_geometry *geometry, const ew_mesh *mesh)
         } else {
             if (any && (a->outcode & b->outcode & c->outcode)) continue;
             if (one_sided && !faces_the_eye(a, b, c)) continue;
-            result = draw_whole(geometry, mesh, index);
+            take_corners(geometry, mesh, index);
+            ew_raster_vertex *const v = geometry->corner;
+            result = ew_raster_triangle_in_range(geometry->raster, &v[0], &v[1], &v[2]);
         }
         if (result < 0) return result;
         drawn += result;

@@ -78,7 +78,7 @@ static int32_t bits_of_borders(int32_t from, uint32_t size)
     return 32 - ew_clz32(farthest - 1u); /* not 0: size is not */
 }
 
-static void choose_rows32(ew_transform *t, const ew_viewport *viewport)
+static EW_OWN_FRAME void choose_rows32(ew_transform *t, const ew_viewport *viewport)
 {
     int32_t down = row32_down(&t->w);
     int32_t w_unit = t->w.e + down; /* sums of w32 are in units of 2^(w_unit - 29) */
@@ -109,6 +109,29 @@ static void choose_rows32(ew_transform *t, const ew_viewport *viewport)
     if (t->w_safe < (int32_t)1 << 20) t->w_safe = (int32_t)1 << 20;
 }
 
+/* The rows x, y and w of viewport, projection and model: the viewport as x = (x_ndc + 1) width/2 +
+ * left, y = (1 - y_ndc) height/2 + top, so that after the division by w the screen position is
+ * there without another sum. The row of z only has to be in range. */
+static EW_OWN_FRAME int choose_rows(ew_transform *t, const ew_projection *projection,
+                                    const ew_mat34 *model_view, const ew_viewport *viewport)
+{
+    const ew_q16_16 half_w = (int32_t)viewport->width * 32768, half_h = (int32_t)viewport->height * 32768;
+    ew_row z;
+    ew_row_from_q16_16(&t->x, half_w, 0, 0, half_w + (int32_t)viewport->x * 65536);
+    ew_row_from_q16_16(&t->y, 0, -half_h, 0, half_h + (int32_t)viewport->y * 65536);
+    ew_row_from_q16_16(&z, 0, 0, 65536, 0);
+    ew_row_from_q16_16(&t->w, 0, 0, 0, 65536);
+    ew_mat44 perspective;
+    int error = ew_mat44_perspective(&perspective, projection);
+    for (int i = 0; i < 4 && !error; i++) {
+        ew_row *row = i == 0 ? &t->x : i == 1 ? &t->y : i == 2 ? &z : &t->w;
+        error = ew_row_mul_mat44(row, row, &perspective);
+        if (!error) error = ew_row_mul_mat34(row, row, model_view);
+        if (!error) bring_to_one_exponent(row);
+    }
+    return error;
+}
+
 int ew_transform_set(ew_transform *transform, const ew_projection *projection, const ew_mat34 *model_view,
                      const ew_viewport *viewport)
 {
@@ -117,35 +140,18 @@ int ew_transform_set(ew_transform *transform, const ew_projection *projection, c
         return EW_ERR_ARGUMENT;
     }
 
-    /* Viewport: x = (x_ndc + 1) width/2 + left, y = (1 - y_ndc) height/2 + top, so that
-     * after the division by w the screen position is there without another sum. */
-    ew_mat44 screen, all;
-    ew_q16_16 half_w = (int32_t)viewport->width * 32768, half_h = (int32_t)viewport->height * 32768;
-    ew_row_from_q16_16(&screen.row[0], half_w, 0, 0, half_w + (int32_t)viewport->x * 65536);
-    ew_row_from_q16_16(&screen.row[1], 0, -half_h, 0, half_h + (int32_t)viewport->y * 65536);
-    ew_row_from_q16_16(&screen.row[2], 0, 0, 65536, 0);
-    ew_row_from_q16_16(&screen.row[3], 0, 0, 0, 65536);
-    int error = ew_mat44_perspective(&all, projection);
-    if (!error) error = ew_mat44_mul(&all, &screen, &all);
-    if (!error) error = ew_mat44_mul_mat34(&all, &all, model_view);
+    int error = choose_rows(transform, projection, model_view, viewport);
     if (error) return error;
-
-    bring_to_one_exponent(&all.row[0]);
-    bring_to_one_exponent(&all.row[1]);
-    bring_to_one_exponent(&all.row[3]);
 
     /* n = m 2^(e - 30) in units of 2^(w.e - 45). m < 2^31, so up to 2^31 more keeps it
      * inside 62 bits; a model that small beside the near distance is all clipped. */
-    int32_t up = projection->near_z.e + 15 - all.row[3].e;
+    int32_t up = projection->near_z.e + 15 - transform->w.e;
     int64_t near_w = projection->near_z.m;
     if (up > 31) near_w = (int64_t)1 << 62;
     else if (up >= 0) near_w *= (int64_t)1 << up;
     else near_w = up < -62 ? 0 : EW_ASR(near_w, -up);
     if (near_w < (int64_t)1 << 16) return EW_ERR_RANGE; /* 1/z would keep fewer than 16 bits */
 
-    transform->x = all.row[0];
-    transform->y = all.row[1];
-    transform->w = all.row[3];
     transform->near_w = near_w;
     transform->left = (int32_t)viewport->x * 4096;
     transform->top = (int32_t)viewport->y * 4096;

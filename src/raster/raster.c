@@ -98,7 +98,7 @@ int ew_raster_set_fog(ew_raster *raster, uint16_t rgb565, ew_uq1_31 w_near, ew_u
     raster->fog_far = w_far;
     raster->fog_shift = (uint8_t)(bits > 16 ? bits - 16 : 0);
     const uint32_t steps = range >> raster->fog_shift; /* 1 to 2^16 - 1 */
-    raster->fog_scale = (0x7FFFFFFFu + steps) / steps;
+    raster->fog_scale = (0x7FFFFFFFu + steps) / steps; /* NOLINT(clang-analyzer-core.DivideZero): range > 0 */
     return EW_OK;
 }
 

@@ -172,16 +172,20 @@ static uint32_t length_of(const ew_raster_vertex *a, const ew_raster_vertex *b)
 }
 
 /* Whether attributes drawn linearly over the whole triangle are displaced by at most the
- * tolerance: max over edges of L |dw| <= 3 t w_min (docs/error-bound.md). */
+ * tolerance: with M = L |dw| of the edges, the largest of them M_1,
+ * max(3 M_1, 2 M_1 + M_2 + M_3) <= 12 t w_min (docs/error-bound.md). */
 static int affine_suffices(const ew_raster_vertex *const v[3], uint32_t tolerance, uint32_t w_min)
 {
-    uint64_t allowed = (uint64_t)w_min * (3u * 256u * tolerance); /* q12: 2^31 2^18 */
+    uint64_t allowed = (uint64_t)w_min * (UINT32_C(3072) * tolerance), sum = 0, most = 0; /* q12: 2^31 2^20 */
     for (int i = 0; i < 3; i++) {
         const ew_raster_vertex *a = v[i], *b = v[i == 2 ? 0 : i + 1];
         uint32_t dw = a->w > b->w ? a->w - b->w : b->w - a->w;
-        if (ew_mul_u32(length_of(a, b), dw) > allowed) return 0; /* <= 2^31 2^31 */
+        uint64_t m = ew_mul_u32(length_of(a, b), dw); /* <= 2^31 2^31 */
+        if (m > allowed) return 0;
+        sum += m;
+        if (m > most) most = m;
     }
-    return 1;
+    return most + (sum > 2 * most ? sum : 2 * most) <= allowed;
 }
 
 /* Whether any point of the triangle is within the tolerance of every other. */

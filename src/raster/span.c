@@ -95,7 +95,7 @@ EW_ALWAYS_INLINE int one_run_suffices(const ew_triangle *t, uint32_t w, uint32_t
 /* How a run's u and v become one texel number (t->plain says where this will do: depth inside
  * its range, sizes of 2 at least, 2^16 texels at most). u and v share 64 bits: from the top u's
  * texel and fraction, v's texel, v's fraction. One addition steps both, one rotation brings
- * the texel number together; what v's texel carries goes into u's fraction, 512 times 2^-16
+ * the texel number together; what v's texel carries goes into u's fraction, 256 times 2^-16
  * texel at most. */
 
 static void packing_init(ew_packing *k, const ew_raster *raster, const ew_triangle *t)
@@ -236,25 +236,14 @@ EW_NOINLINE void piece_of_texture(ew_packing *k, const ew_triangle *t, ew_linear
 
 /* ---- everything else ---- */
 
-/* A shade inside its range at both ends is inside everywhere: a tangent may leave it. */
-static int32_t clamp_shade(int32_t s)
-{
-    const int32_t all = (int32_t)1 << 24;
-    return s < 0 ? 0 : s > all ? all : s;
-}
-
-static void shade_run(ew_run *run, const ew_triangle *t, const ew_attribute_run *from, int32_t n)
+/* A tangent may leave a shade's range: ew_fill_any clamps. */
+static void shade_run(ew_run *run, const ew_triangle *t, const ew_attribute_run *from)
 {
     enum { DOWN = EW_FRACTION(EW_SHADE_BITS) - 16 };
     for (int i = 0; i < 3; i++) {
         /* rounds to nearest where fill.c drops the fraction */
-        int32_t origin = t->shade_origin[i] * 16 + 32768, step = EW_ASR((int32_t)from->dshade[i], DOWN);
-        int32_t start = origin + EW_ASR((int32_t)from->shade[i], DOWN), end = start + step * (n - 1);
-        run->shade[i] = clamp_shade(start);
-        run->dshade[i] = step;
-        if ((start != run->shade[i] || end != clamp_shade(end)) && n > 1) {
-            run->dshade[i] = (clamp_shade(end) - run->shade[i]) / (n - 1);
-        }
+        run->shade[i] = t->shade_origin[i] * 16 + 32768 + EW_ASR((int32_t)from->shade[i], DOWN);
+        run->dshade[i] = EW_ASR((int32_t)from->dshade[i], DOWN);
     }
 }
 
@@ -277,7 +266,7 @@ EW_NOINLINE void make_run(ew_raster *raster, int32_t n)
     run->v = ((uint64_t)(int64_t)t->v_origin << 20) + texels_of(t, from->v);
     run->du = texels_of(t, from->du), run->dv = texels_of(t, from->dv);
     run->u_down = texels_of(t, from->u_down), run->v_down = texels_of(t, from->v_down);
-    if (EW_WITH_SHADING && raster->material.flags & EW_SHADED) shade_run(run, t, from, n);
+    if (EW_WITH_SHADING && raster->material.flags & EW_SHADED) shade_run(run, t, from);
     at->x = (uint16_t)(at->x + n);
     at->w += at->dw * (uint32_t)n;
 }
@@ -386,7 +375,7 @@ EW_NOINLINE int start_piece(ew_raster *raster, int32_t x, int32_t y, int32_t n)
     const ew_triangle *t = &raster->work.triangle;
     const ew_linear *l = &raster->work.now.span.linear;
     EW_KEEP_ORDER(t);
-    const int down = t->w_lead + l->align;
+    const int down = smaller(t->w_lead + l->align, 31);
     const uint32_t w = depth_of(l->w, down), dw = depth_step(l->dw, down);
     if (is_plain(t, w, dw, n)) {
         const size_t offset = (size_t)y * raster->target.stride + (size_t)x;
@@ -445,13 +434,13 @@ static int alignment(uint64_t w, uint64_t end, uint32_t *least)
     return up;
 }
 
-/* Whether 32-bit steps keep attributes within 1/128 texel over n pixels: n 2^bits <= 4 w' at
- * both ends; affine, where w' does not matter: n 2^bits <= 2^33 (docs/error-bound.md). */
+/* Whether 32-bit steps keep attributes within 1/256 texel over n pixels: n 2^bits <= 2 w' at
+ * both ends; affine, where w' does not matter: n 2^bits <= 2^32, 1/128 texel (docs/error-bound.md). */
 EW_ALWAYS_INLINE int steps_suffice(const ew_triangle *t, uint32_t w, uint32_t last, int32_t n)
 {
     int32_t least = smaller((int32_t)w, (int32_t)last); /* rounding may take it below 0 */
     if (t->rung == EW_RUNG_AFFINE) least = INT32_MAX;
-    return n <= EW_LONGEST_RUN && n * ((int32_t)1 << (t->uv_bits - EW_BITS_LEAST)) <= EW_ASR(least, EW_BITS_LEAST - 2); /* 2^9 2^8 */
+    return n <= EW_LONGEST_RUN && n * ((int32_t)1 << (t->uv_bits - EW_BITS_LEAST)) <= EW_ASR(least, EW_BITS_LEAST - 1); /* 2^8 2^8 */
 }
 
 /* The same for wide triangles, unaligned. */

@@ -41,7 +41,7 @@ int ew_texture_check(const ew_texture *t, int filter, int flags)
 
 uint32_t ew_texture_inverse(uint32_t size)
 {
-    if (!EW_WITH_WRAPS && !EW_WITH_MIPS) return 0;
+    if (EW_WITH_WRAPS + EW_WITH_MIPS == 0) return 0;
     return 0xFFFFFFFFu / size + (is_power_of_two(size) ? 1u : 0u); /* 2^32 becomes 0 */
 }
 

@@ -39,7 +39,7 @@ static int tag_is(const uint8_t *p, const char *tag)
            p[3] == (uint8_t)tag[3];
 }
 
-static void row_at(const uint8_t *p, ew_row *row)
+static EW_OWN_FRAME void row_at(const uint8_t *p, ew_row *row)
 {
     for (int k = 0; k < 4; k++) row->m[k] = i32_at(p + 4 * k);
     row->e = i16_at(p + 16);
@@ -296,22 +296,36 @@ void ew_scene_get_node(const ew_scene *scene, uint32_t i, ew_scene_node *node)
     mat34_at(p + 8, &node->local);
 }
 
+/* Takes the vertices of primitive p to its node: o + s v, a diagonal matrix and o. */
+static void dequantise_at(const uint8_t *p, ew_mat34 *matrix)
+{
+    p += 16; /* o, s and both exponents, that of o first */
+    for (int k = 0; k < 3; k++) {
+        ew_row *row = &matrix->row[k];
+        row->m[0] = row->m[1] = row->m[2] = 0;
+        row->m[k] = i32_at(p + 12);
+        row->m[3] = i32_at(p + 4 * k);
+        row->e = i16_at(p + 18);
+        row->e_last = i16_at(p + 16);
+    }
+}
+
+/* Sections start on multiples of 4 and both records have even sizes. */
+static const ew_vertex16 *vertices_at(const ew_scene *scene, const uint8_t *p)
+{
+    return (const void *)record(scene, EW_SECTION_VERT, u32_at(p));
+}
+static const uint16_t *indices_at(const ew_scene *scene, const uint8_t *p)
+{
+    return (const void *)record(scene, EW_SECTION_INDX, u32_at(p + 8));
+}
+
 void ew_scene_get_primitive(const ew_scene *scene, uint32_t i, ew_scene_primitive *primitive)
 {
     const uint8_t *p = record(scene, EW_SECTION_PRIM, i);
-    ew_row box;
-    row_at(p + 16, &box);
-    for (int k = 0; k < 3; k++) { /* o + s p: a diagonal matrix, and o */
-        ew_row *row = &primitive->dequantise.row[k];
-        row->m[0] = row->m[1] = row->m[2] = 0;
-        row->m[k] = box.m[3];
-        row->m[3] = box.m[k];
-        row->e = box.e_last;
-        row->e_last = box.e;
-    }
-    /* sections start on multiples of 4 and both records have even sizes */
-    primitive->vertices = (const void *)record(scene, EW_SECTION_VERT, u32_at(p));
-    primitive->indices = (const void *)record(scene, EW_SECTION_INDX, u32_at(p + 8));
+    dequantise_at(p, &primitive->dequantise);
+    primitive->vertices = vertices_at(scene, p);
+    primitive->indices = indices_at(scene, p);
     primitive->index_count = u32_at(p + 12);
     primitive->vertex_count = u16_at(p + 4);
     primitive->material = u16_at(p + 6);
@@ -352,69 +366,73 @@ static ew_quat quaternion_at(const uint8_t *p)
     return q;
 }
 
-static int track_matrix(const ew_scene *scene, uint32_t track, uint32_t time_ms, ew_mat34 *out)
+/* A place in a track: a part f 2^-31 of the way from key a to b. */
+typedef struct key_pair {
+    const uint8_t *a, *b;
+    uint32_t f;
+} key_pair;
+
+static EW_OWN_FRAME void find_keys(key_pair *keys, const ew_scene *scene, const uint8_t *track, uint32_t time_ms)
 {
-    const uint8_t *p = record(scene, EW_SECTION_TRAK, track);
-    uint32_t first = u32_at(p), last = (uint32_t)u16_at(p + 4) - 1u, interval = u16_at(p + 6);
+    uint32_t first = u32_at(track), last = (uint32_t)u16_at(track + 4) - 1u, interval = u16_at(track + 6);
     uint32_t k = time_ms / interval, rest;
     uint32_t f = ew_udiv64_32((uint64_t)(time_ms % interval) << 31, interval, &rest);
     if (k >= last) k = last, f = 0;
-    const uint8_t *a = record(scene, EW_SECTION_KEYS, first + k);
-    const uint8_t *b = f ? a + rules[EW_SECTION_KEYS].record_bytes : a;
+    keys->a = record(scene, EW_SECTION_KEYS, first + k);
+    keys->b = f ? keys->a + rules[EW_SECTION_KEYS].record_bytes : keys->a;
+    keys->f = f;
+}
 
-    int32_t t[3], s[3];
+static EW_OWN_FRAME int rotation_between(ew_quat *q, const key_pair *keys)
+{
+    ew_quat to = quaternion_at(keys->b + 12);
+    *q = quaternion_at(keys->a + 12);
+    return ew_quat_slerp(q, q, &to, keys->f);
+}
+
+/* Three numbers of the keys, from byte `at` on. */
+static EW_OWN_FRAME void vector_between(int32_t v[3], const key_pair *keys, int at)
+{
     for (int i = 0; i < 3; i++) {
-        t[i] = between(i32_at(a + 4 * i), i32_at(b + 4 * i), f);
-        s[i] = between(i32_at(a + 20 + 4 * i), i32_at(b + 20 + 4 * i), f);
+        v[i] = between(i32_at(keys->a + at + 4 * i), i32_at(keys->b + at + 4 * i), keys->f);
     }
-    ew_quat from = quaternion_at(a + 12), to = quaternion_at(b + 12);
-    int error = ew_quat_slerp(&from, &from, &to, f);
-    return error ? error : ew_mat34_from_trs(out, t, i16_at(p + 8), &from, s, i16_at(p + 10));
+}
+
+static EW_OWN_FRAME int track_matrix(const ew_scene *scene, uint32_t track, uint32_t time_ms, ew_mat34 *out)
+{
+    const uint8_t *p = record(scene, EW_SECTION_TRAK, track);
+    key_pair keys;
+    ew_quat q;
+    int32_t t[3], s[3];
+    find_keys(&keys, scene, p, time_ms);
+    int error = rotation_between(&q, &keys);
+    if (error) return error;
+    vector_between(t, &keys, 0);
+    vector_between(s, &keys, 20);
+    return ew_mat34_from_trs(out, t, i16_at(p + 8), &q, s, i16_at(p + 10));
 }
 
 int ew_scene_pose(const ew_scene *scene, uint32_t time_ms, ew_mat34 *world)
 {
     for (uint32_t i = 0; i < scene->section[EW_SECTION_NODE].count; i++) {
-        ew_scene_node node;
-        ew_scene_get_node(scene, i, &node);
-        if (node.track >= 0) {
-            int error = track_matrix(scene, (uint32_t)node.track, time_ms, &node.local);
-            if (error) return error;
-        }
-        if (node.parent < 0) {
-            world[i] = node.local;
-            continue;
-        }
-        int error = ew_mat34_mul(&world[i], &world[node.parent], &node.local);
+        const uint8_t *p = record(scene, EW_SECTION_NODE, i);
+        const int16_t parent = i16_at(p), track = i16_at(p + 2);
+        int error = EW_OK;
+        if (track >= 0) error = track_matrix(scene, (uint32_t)track, time_ms, &world[i]);
+        else mat34_at(p + 8, &world[i]);
+        if (!error && parent >= 0) error = ew_mat34_mul(&world[i], &world[parent], &world[i]);
         if (error) return error;
     }
     return EW_OK;
 }
 
-/* ---- drawing ---- */
+/* ---- drawing ----
+ *
+ * Below ew_scene_draw lies the deepest chain of calls there is, so it holds what it can in
+ * geometry->scene. */
 
-static int32_t draw_primitive(const ew_scene *scene, uint32_t number, const ew_projection *projection,
-                              const ew_mat34 *node_view, const ew_viewport *viewport, ew_geometry *geometry,
-                              ew_screen_vertex *scratch)
-{
-    ew_scene_primitive primitive;
-    ew_scene_get_primitive(scene, number, &primitive);
-    ew_material material;
-    ew_texture texture;
-    ew_scene_get_material(scene, primitive.material, &material, &texture);
-    ew_mat34 model_view;
-    int error = ew_mat34_mul(&model_view, node_view, &primitive.dequantise);
-    if (!error) error = ew_raster_set_material(geometry->raster, &material);
-    if (!error) error = ew_transform_set(&geometry->transform, projection, &model_view, viewport);
-    if (error) return error;
-    ew_transform_vertices(&geometry->transform, primitive.vertices, primitive.vertex_count, scratch);
-    const ew_mesh mesh = { primitive.vertices, scratch, NULL, primitive.indices, primitive.index_count,
-                           primitive.uv_fraction_bits };
-    return ew_draw_triangles(geometry, &mesh);
-}
-
-int32_t ew_scene_draw(const ew_scene *scene, const ew_scene_camera *camera, const ew_mat34 *world,
-                      const ew_viewport *viewport, ew_geometry *geometry, ew_screen_vertex *scratch)
+static EW_OWN_FRAME int set_projection(ew_projection *projection, const ew_scene_camera *camera,
+                                       const ew_viewport *viewport)
 {
     /* focal_y = focal; focal_x = focal height/width, nearest */
     uint32_t rest;
@@ -423,19 +441,62 @@ int32_t ew_scene_draw(const ew_scene *scene, const ew_scene_camera *camera, cons
     if (across >> 32 >= viewport->width) return EW_ERR_ARGUMENT;
     uint32_t focal_x = ew_udiv64_32(across, viewport->width, &rest);
     if (focal_x > INT32_MAX) return EW_ERR_ARGUMENT;
-    const ew_projection projection = { (ew_q16_16)focal_x, camera->focal, camera->near_z };
+    projection->focal_x = (ew_q16_16)focal_x;
+    projection->focal_y = camera->focal;
+    projection->near_z = camera->near_z;
+    return EW_OK;
+}
 
+static EW_OWN_FRAME int use_material(const ew_scene *scene, uint32_t number, ew_raster *raster)
+{
+    ew_material material;
+    ew_texture texture;
+    ew_scene_get_material(scene, number, &material, &texture);
+    return ew_raster_set_material(raster, &material);
+}
+
+/* Makes material, transform and mesh ready for primitive p, with its vertices on the screen. */
+static EW_OWN_FRAME int prepare_primitive(const ew_scene *scene, const uint8_t *p, ew_geometry *geometry,
+                                          ew_screen_vertex *scratch)
+{
+    ew_mat34 *const model_view = &geometry->scene.model_view;
+    dequantise_at(p, model_view);
+    int error = ew_mat34_mul(model_view, &geometry->scene.node_view, model_view);
+    if (!error) error = use_material(scene, u16_at(p + 6), geometry->raster);
+    if (error) return error;
+    error = ew_transform_set(&geometry->transform, &geometry->scene.projection, model_view,
+                             &geometry->scene.viewport);
+    if (error) return error;
+    ew_mesh *const mesh = &geometry->scene.mesh;
+    mesh->vertices = vertices_at(scene, p);
+    mesh->screen = scratch;
+    mesh->colours = NULL;
+    mesh->indices = indices_at(scene, p);
+    mesh->index_count = u32_at(p + 12);
+    mesh->uv_fraction_bits = p[36];
+    ew_transform_vertices(&geometry->transform, mesh->vertices, u16_at(p + 4), scratch);
+    return EW_OK;
+}
+
+int32_t ew_scene_draw(const ew_scene *scene, const ew_scene_camera *camera, const ew_mat34 *world,
+                      const ew_viewport *viewport, ew_geometry *geometry, ew_screen_vertex *scratch)
+{
+    int error = set_projection(&geometry->scene.projection, camera, viewport);
+    if (error) return error;
+    geometry->scene.viewport = *viewport;
     int32_t drawn = 0;
     for (uint32_t i = 0; i < scene->section[EW_SECTION_NODE].count; i++) {
-        ew_scene_node node;
-        ew_scene_get_node(scene, i, &node);
-        if (!node.primitive_count) continue;
-        ew_mat34 node_view;
-        int error = ew_mat34_mul(&node_view, &camera->view, &world[i]);
+        const uint8_t *node = record(scene, EW_SECTION_NODE, i);
+        uint32_t number = u16_at(node + 4);
+        const uint32_t end = number + u16_at(node + 6);
+        if (number == end) continue;
+        error = ew_mat34_mul(&geometry->scene.node_view, &camera->view, &world[i]);
         if (error) return error;
-        for (uint16_t k = 0; k < node.primitive_count; k++) {
-            int32_t result = draw_primitive(scene, (uint32_t)node.first_primitive + k, &projection,
-                                            &node_view, viewport, geometry, scratch);
+        for (; number < end; number++) {
+            const uint8_t *p = record(scene, EW_SECTION_PRIM, number);
+            error = prepare_primitive(scene, p, geometry, scratch);
+            if (error) return error;
+            int32_t result = ew_draw_triangles(geometry, &geometry->scene.mesh);
             if (result < 0) return result;
             drawn += result;
         }
