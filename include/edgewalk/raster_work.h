@@ -180,7 +180,10 @@ typedef struct ew_sampler {
     const uint8_t *texels;
     const uint8_t *mask; /* NULL: none                                                     */
     ew_axis u, v;
-    uint32_t sum[3];   /* of a pixel's four texels                                         */
+    uint32_t sum[3];   /* of a pixel's texels, by their weights                             */
+    uint8_t weight[4];
+    uint16_t texel[3]; /* the colour of a texel, then of the pixel                          */
+    uint16_t level, next_share; /* the level, and the share of the one behind it            */
     uint16_t row_bytes, mask_row_bytes; /* 4096 at most                                     */
     uint16_t share;    /* of 256: how far they take the place of what the piece has        */
     uint8_t log2_bits; /* of a texel                                                      */
@@ -190,6 +193,21 @@ typedef struct ew_sampler {
 } ew_sampler;
 
 /* ---- all of it ---- */
+
+/* While spans are drawn. */
+typedef struct ew_span_work {
+    ew_linear linear; /* and the packing: near each other, which short offsets reach       */
+    union {
+        ew_packing packing;
+        struct {
+            ew_attribute_run attributes;
+            ew_position position;
+            ew_run run;
+            ew_piece piece;
+            ew_sampler sampler;
+        } any;
+    } fill;
+} ew_span_work;
 
 typedef struct ew_raster_work {
     ew_triangle triangle;
@@ -202,19 +220,7 @@ typedef struct ew_raster_work {
             ew_differences differences;
             uint32_t w[3]; /* of the corners, scaled                                       */
         } setup;
-        struct { /* while spans are drawn */
-            ew_linear linear;
-            union {
-                ew_packing packing;
-                struct {
-                    ew_attribute_run attributes;
-                    ew_position position;
-                    ew_run run;
-                    ew_piece piece;
-                    ew_sampler sampler;
-                } any;
-            } fill;
-        } span;
+        ew_span_work span;
     } now;
 } ew_raster_work;
 

@@ -10,7 +10,8 @@
 #define EW_ALWAYS_INLINE static inline __attribute__((always_inline))
 #define EW_NOINLINE static __attribute__((noinline))
 /* No instruction: keeps compilers from turning unrolled additions into sums that need more
- * registers than there are. */
+ * registers than there are; and a pointer into the context a base of its own, which short
+ * offsets on ARMv6-M need. */
 #define EW_KEEP_ORDER(x) __asm__("" : "+r"(x))
 #else
 #define EW_ALWAYS_INLINE static inline

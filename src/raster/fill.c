@@ -116,7 +116,10 @@ static void fill_piece(ew_raster *raster, const ew_run *run, int n)
         if (!piece->live) return;
     }
     if (raster->texture.texels) {
-        ew_texture_sample(raster, run, piece);
+        ew_sampler *s = &raster->work.now.span.fill.any.sampler;
+        ew_texture_start(s, raster, run);
+        do ew_texture_sample(s, piece);
+        while (ew_texture_next(s, raster, run));
     } else {
         paint(raster, piece);
     }

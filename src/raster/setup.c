@@ -314,6 +314,11 @@ int ew_setup(ew_raster *raster)
     ew_differences *of = &raster->work.now.setup.differences;
     ew_basis *b = &raster->work.now.setup.basis;
     uint32_t *w = raster->work.now.setup.w; /* below 2^31 / 1.5: outside of the corners w may exceed the largest by a quarter */
+    EW_KEEP_ORDER(t);
+    EW_KEEP_ORDER(c);
+    EW_KEEP_ORDER(of);
+    EW_KEEP_ORDER(b);
+    EW_KEEP_ORDER(w);
     const ew_raster_vertex *const *v = c->v;
     const int has_texture = raster->texture.texels != NULL, has_shades = (raster->material.flags & EW_SHADED) != 0;
     uint32_t w_max = larger(larger(v[0]->w, v[1]->w), v[2]->w), w_min = smaller(smaller(v[0]->w, v[1]->w), v[2]->w);

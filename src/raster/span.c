@@ -331,6 +331,9 @@ EW_NOINLINE int32_t next_of_any(ew_raster *raster, int32_t n)
     const ew_triangle *t = &raster->work.triangle;
     ew_linear *l = &raster->work.now.span.linear;
     ew_attribute_run *run = &raster->work.now.span.fill.any.attributes;
+    EW_KEEP_ORDER(t);
+    EW_KEEP_ORDER(l);
+    EW_KEEP_ORDER(run);
     if (t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_CONSTANT) {
         run_of_affine(run, t, l);
         return n;
@@ -371,11 +374,13 @@ EW_NOINLINE int start_piece(ew_raster *raster, int32_t x, int32_t y, int32_t n)
 {
     const ew_triangle *t = &raster->work.triangle;
     const ew_linear *l = &raster->work.now.span.linear;
+    EW_KEEP_ORDER(t);
     const int down = smaller(t->w_lead + l->align, 31);
     const uint32_t w = depth_of(l->w, down), dw = depth_step(l->dw, down);
     if (is_plain(t, w, dw, n)) {
         const size_t offset = (size_t)y * raster->target.stride + (size_t)x;
         ew_packing *k = &raster->work.now.span.fill.packing;
+        EW_KEEP_ORDER(k);
         packing_init(k, raster, t);
         k->loop.w = w, k->loop.dw = dw;
         k->colour = (uint16_t *)raster->target.colour + offset;
@@ -405,6 +410,8 @@ EW_NOINLINE void start_narrow(ew_raster *raster, int32_t x)
     const ew_triangle *t = &raster->work.triangle;
     const ew_plane32 *p = &t->plane.narrow[EW_PLANE_SHADE];
     ew_linear *l = &raster->work.now.span.linear;
+    EW_KEEP_ORDER(t);
+    EW_KEEP_ORDER(l);
     l->align = 0;
     l->dw = t->plane.narrow[EW_PLANE_W].dx;
     l->du = t->plane.narrow[EW_PLANE_U].dx;
@@ -470,6 +477,8 @@ EW_NOINLINE int32_t next_of_wide(ew_raster *raster, int32_t x, int32_t n)
     const ew_triangle *t = &raster->work.triangle;
     const ew_plane64 *p = t->plane.wide;
     ew_linear *l = &raster->work.now.span.linear;
+    EW_KEEP_ORDER(t);
+    EW_KEEP_ORDER(l);
     x -= t->column;
     const uint64_t w = p[EW_PLANE_W].row + ew_wrap_mul64(p[EW_PLANE_W].dx, x);
     n = piece_length(t, w, n, &l->align);
@@ -514,21 +523,16 @@ EW_ALWAYS_INLINE void steps_start(ew_packing *k, ew_linear *s, const ew_triangle
     k->loop.dw = depth_step(s->dw, t->w_lead);
 }
 
-/* A span that is too long for steps of 32 bits. */
-EW_NOINLINE void pieces_of_texture(ew_raster *raster, int32_t x, int32_t n)
+/* work.linear and the packing's 1/z for the next piece of a span that is too long for steps of
+ * 32 bits. Returns its length. */
+EW_NOINLINE int32_t next_of_texture(ew_raster *raster, int32_t x, int32_t n)
 {
-    const ew_triangle *t = &raster->work.triangle;
+    const ew_linear *l = &raster->work.now.span.linear;
     ew_packing *k = &raster->work.now.span.fill.packing;
-    ew_linear *l = &raster->work.now.span.linear;
-    while (n > 0) {
-        const int32_t m = next_of_wide(raster, x, n);
-        k->loop.w = depth_of(l->w, t->w_lead + l->align);
-        k->loop.dw = depth_step(l->dw, t->w_lead + l->align);
-        piece_of_texture(k, t, l, m);
-        x += m;
-        n -= m;
-    }
-    steps_start(k, l, t, 1);
+    n = next_of_wide(raster, x, n);
+    const int down = raster->work.triangle.w_lead + l->align;
+    k->loop.w = depth_of(l->w, down), k->loop.dw = depth_step(l->dw, down);
+    return n;
 }
 
 /* Triangles with a texture, depth and nothing else, on the affine rung or in runs: ew_walk_rows
@@ -540,9 +544,12 @@ EW_ALWAYS_INLINE int rows_of_texture(ew_raster *raster, int32_t row, int32_t end
     const size_t offset = (size_t)row * raster->target.stride;
     uint16_t *colour = (uint16_t *)raster->target.colour + offset, *depth = raster->target.depth + offset;
     ew_edge l = raster->work.edge[0], r = raster->work.edge[1]; /* or they would be read and written around each span */
-    ew_linear *s = &raster->work.now.span.linear;
-    ew_packing *k = &raster->work.now.span.fill.packing;
+    ew_span_work *span = &raster->work.now.span;
     int reached = 0;
+    EW_KEEP_ORDER(t); /* bases of their own, with short offsets from them */
+    EW_KEEP_ORDER(span);
+    ew_linear *s = &span->linear;
+    ew_packing *k = &span->fill.packing;
     packing_init(k, raster, t);
     steps_start(k, s, t, wide);
     for (; row < end; row++) {
@@ -561,8 +568,15 @@ EW_ALWAYS_INLINE int rows_of_texture(ew_raster *raster, int32_t row, int32_t end
                 narrow_start(s, t, x);
             }
             k->loop.w = depth_of(s->w, t->w_lead);
-            if (!whole) pieces_of_texture(raster, x, n);
-            else if (t->rung == EW_RUNG_AFFINE) fill_textured(k, s->u, s->du, s->v, s->dv, n);
+            if (!whole) {
+                while (n > 0) {
+                    const int32_t m = next_of_texture(raster, x, n);
+                    piece_of_texture(k, t, s, m);
+                    x += m;
+                    n -= m;
+                }
+                steps_start(k, s, t, wide);
+            } else if (t->rung == EW_RUNG_AFFINE) fill_textured(k, s->u, s->du, s->v, s->dv, n);
             else if (one_run_suffices(t, s->w, s->dw, n)) run_of_texture(k, s, (uint32_t)n >> 1, n);
             else piece_of_texture(k, t, s, n);
             reached = 1;

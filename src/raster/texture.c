@@ -193,17 +193,17 @@ static uint32_t stored(const ew_sampler *s, uint32_t column, uint32_t row)
     return ew_packed_get(line, column, s->log2_bits);
 }
 
-EW_NOINLINE void fetch(const ew_sampler *s, uint32_t column, uint32_t row, uint16_t out[3])
+EW_NOINLINE void fetch(ew_sampler *s, uint32_t column, uint32_t row)
 {
     const ew_texture *t = s->texture;
     uint32_t value = stored(s, column, row);
     switch (EW_WITH_TEXTURE_FORMATS ? t->format : EW_TEXTURE_RGB565) {
     case EW_TEXTURE_RGB565: break;
-    case EW_TEXTURE_RGB332: ew_decode_332(out, value); return;
-    case EW_TEXTURE_GREY8: ew_decode_grey(out, value); return;
+    case EW_TEXTURE_RGB332: ew_decode_332(s->texel, value); return;
+    case EW_TEXTURE_GREY8: ew_decode_grey(s->texel, value); return;
     default: value = t->palette[value]; break;
     }
-    ew_decode_565(out, value, s->wide);
+    ew_decode_565(s->texel, value, s->wide);
 }
 
 /* Whether a texel is left out. */
@@ -214,18 +214,23 @@ EW_NOINLINE int is_cut(const ew_sampler *s, uint32_t column, uint32_t row)
 }
 
 #if EW_WITH_BILINEAR
-/* The four texels around a position whose whole part is the upper left one, weighted in
+/* The four texels around a position whose whole part is the upper left one are weighted in
  * 1/32: fu and fv are five bits of the fraction. */
-EW_NOINLINE void fetch_four(ew_sampler *s, uint32_t fu, uint32_t fv, uint16_t out[3])
+EW_NOINLINE void weigh(ew_sampler *s, uint32_t fu, uint32_t fv)
 {
     const uint32_t both = (fu * fv + 16u) >> 5; /* the weights: none is below 0, their sum is 32 */
+    s->weight[0] = (uint8_t)(32u - fu - fv + both);
+    s->weight[1] = (uint8_t)(fu - both);
+    s->weight[2] = (uint8_t)(fv - both);
+    s->weight[3] = (uint8_t)both;
     s->sum[0] = s->sum[1] = s->sum[2] = 0;
-    for (uint32_t k = 0; k < 4; k++) {
-        const uint32_t weight = k == 0 ? 32u - fu - fv + both : k == 1 ? fu - both : k == 2 ? fv - both : both;
-        fetch(s, texel_index(&s->u, k & 1u), texel_index(&s->v, k >> 1), out);
-        for (int j = 0; j < 3; j++) s->sum[j] += weight * out[j]; /* <= 32 * 4095 */
-    }
-    for (int j = 0; j < 3; j++) out[j] = (uint16_t)(s->sum[j] >> 5);
+}
+
+/* Adds one of the four. */
+EW_NOINLINE void add_texel(ew_sampler *s, uint32_t k)
+{
+    fetch(s, texel_index(&s->u, k & 1u), texel_index(&s->v, k >> 1));
+    for (int j = 0; j < 3; j++) s->sum[j] += (uint32_t)s->weight[k] * s->texel[j]; /* <= 32 * 4095 */
 }
 #endif
 
@@ -234,77 +239,91 @@ EW_NOINLINE void fetch_four(ew_sampler *s, uint32_t fu, uint32_t fv, uint16_t ou
 /* Bilinear positions begin at the upper left texel's centre; 1/64 texel rounds the weights. */
 #define HALF_TEXEL ((UINT32_C(1) << 31) - (UINT32_C(1) << 26))
 
-EW_NOINLINE void start(ew_sampler *s, const ew_raster *raster, const ew_run *run, uint32_t level)
+EW_NOINLINE void start_level(ew_sampler *s, const ew_raster *raster, const ew_run *run)
 {
     const ew_texture *t = &raster->texture;
-    s->texture = t;
-    s->mask = EW_WITH_CUTOUTS && (raster->material.flags & EW_ALPHA_MASK) ? t->mask : NULL;
-    s->log2_bits = log2_bits_of(t->format);
-    s->wide = ew_wide(&raster->target);
-    s->smooth = EW_WITH_BILINEAR && raster->material.filter != EW_FILTER_NEAREST;
-    find_level(s, level);
     const uint32_t back = s->smooth ? HALF_TEXEL : 0;
+    s->mask = EW_WITH_CUTOUTS && (raster->material.flags & EW_ALPHA_MASK) ? t->mask : NULL;
+    find_level(s, s->level);
     s->u.at = run->u, s->u.step = run->du, s->u.size = t->width;
     s->v.at = run->v, s->v.step = run->dv, s->v.size = t->height;
-    axis_start(&s->u, level, t->wrap_u, raster->inverse_width, back);
-    axis_start(&s->v, level, t->wrap_v, raster->inverse_height, back);
+    axis_start(&s->u, s->level, t->wrap_u, raster->inverse_width, back);
+    axis_start(&s->v, s->level, t->wrap_v, raster->inverse_height, back);
 }
 
-static void sample_pixel(ew_sampler *s, ew_piece *piece, int i)
+/* The pixel's colour into s->texel. */
+static void sample_pixel(ew_sampler *s, uint32_t fu, uint32_t fv, uint32_t column, uint32_t row)
 {
-    const uint32_t fu = s->smooth ? (uint32_t)(s->u.at >> 27 & 31u) : 0, fv = s->smooth ? (uint32_t)(s->v.at >> 27 & 31u) : 0;
-    /* the nearest texel is the one with the larger weight */
-    const uint32_t column = texel_index(&s->u, fu >> 4), row = texel_index(&s->v, fv >> 4);
-    uint16_t c[3];
-    if (EW_WITH_CUTOUTS && s->cuts && is_cut(s, column, row)) {
-        piece->live = (uint8_t)(piece->live & ~(1u << i));
-        return;
-    }
 #if EW_WITH_BILINEAR
     if (fu | fv) {
-        fetch_four(s, fu, fv, c);
-    } else
-#endif
-    {
-        fetch(s, column, row, c);
+        weigh(s, fu, fv);
+        for (uint32_t k = 0; k < 4; k++) add_texel(s, k);
+        for (int j = 0; j < 3; j++) s->texel[j] = (uint16_t)(s->sum[j] >> 5);
+        return;
     }
+#endif
+    fetch(s, column, row);
+}
+
+EW_NOINLINE void store(const ew_sampler *s, uint16_t colour[3])
+{
     for (int k = 0; k < 3; k++) {
-        if (EW_WITH_MIPS && s->share < 256) c[k] = ew_mix256(piece->colour[i][k], c[k], s->share);
-        piece->colour[i][k] = c[k];
+        colour[k] = EW_WITH_MIPS && s->share < 256 ? ew_mix256(colour[k], s->texel[k], s->share) : s->texel[k];
     }
 }
 
-EW_NOINLINE void sample_level(ew_sampler *s, ew_piece *piece)
+void ew_texture_sample(ew_sampler *s, ew_piece *piece)
 {
     for (int i = 0; i < piece->n; i++) {
-        if (piece->live >> i & 1) sample_pixel(s, piece, i);
+        if (piece->live >> i & 1) {
+            const uint32_t fu = s->smooth ? (uint32_t)(s->u.at >> 27 & 31u) : 0, fv = s->smooth ? (uint32_t)(s->v.at >> 27 & 31u) : 0;
+            /* the nearest texel is the one with the larger weight */
+            const uint32_t column = texel_index(&s->u, fu >> 4), row = texel_index(&s->v, fv >> 4);
+            if (EW_WITH_CUTOUTS && s->cuts && is_cut(s, column, row)) {
+                piece->live = (uint8_t)(piece->live & ~(1u << i));
+            } else {
+                sample_pixel(s, fu, fv, column, row);
+                store(s, piece->colour[i]);
+            }
+        }
         axis_step(&s->u);
         axis_step(&s->v);
     }
 }
 
-void ew_texture_sample(ew_raster *raster, const ew_run *run, ew_piece *piece)
+static uint8_t cuts_of(const ew_raster *raster)
 {
-    const uint8_t cuts = EW_WITH_CUTOUTS ? raster->material.flags & (EW_COLOUR_KEY | EW_ALPHA_MASK) : 0;
-    uint32_t level = 0, share = 0; /* of the level behind it */
-    ew_sampler *s = &raster->work.now.span.fill.any.sampler;
+    return EW_WITH_CUTOUTS ? raster->material.flags & (EW_COLOUR_KEY | EW_ALPHA_MASK) : 0;
+}
+
+void ew_texture_start(ew_sampler *s, const ew_raster *raster, const ew_run *run)
+{
+    s->level = s->next_share = 0;
 #if EW_WITH_MIPS
     if (raster->texture.levels > 1) {
         const uint32_t last = raster->texture.levels - 1u, lambda = ew_texture_level(run);
         const int two = EW_WITH_BILINEAR && raster->material.filter == EW_FILTER_TRILINEAR;
-        level = (two ? lambda : lambda + 128u) >> 8;
-        if (level >= last) level = last;
-        else if (two) share = lambda & 255u;
+        const uint32_t level = (two ? lambda : lambda + 128u) >> 8;
+        s->level = (uint16_t)(level < last ? level : last);
+        if (two && level < last) s->next_share = lambda & 255u;
     }
 #endif
-    start(s, raster, run, level);
+    s->texture = &raster->texture;
+    s->log2_bits = log2_bits_of(raster->texture.format);
+    s->wide = ew_wide(&raster->target);
+    s->smooth = EW_WITH_BILINEAR && raster->material.filter != EW_FILTER_NEAREST;
     s->share = 256;
-    s->cuts = share < 128 ? cuts : 0;
-    sample_level(s, piece);
-    if (EW_WITH_MIPS && share) {
-        start(s, raster, run, level + 1u);
-        s->share = (uint16_t)share;
-        s->cuts = share < 128 ? 0 : cuts;
-        sample_level(s, piece);
-    }
+    s->cuts = s->next_share < 128 ? cuts_of(raster) : 0;
+    start_level(s, raster, run);
+}
+
+int ew_texture_next(ew_sampler *s, const ew_raster *raster, const ew_run *run)
+{
+    if (!EW_WITH_MIPS || !s->next_share) return 0;
+    s->level++;
+    s->share = s->next_share;
+    s->cuts = s->share < 128 ? 0 : cuts_of(raster);
+    s->next_share = 0;
+    start_level(s, raster, run);
+    return 1;
 }

@@ -11,9 +11,14 @@ int ew_texture_check(const ew_texture *texture, int filter, int flags);
 /* floor(2^32 / size); 0 for a size of 1. */
 uint32_t ew_texture_inverse(uint32_t size);
 
-/* The colours of a piece that begins at the run's first pixel. Pixels whose texel is left
- * out are no longer live. */
-void ew_texture_sample(ew_raster *raster, const ew_run *run, ew_piece *piece);
+/* Makes ready for a piece's first level; it begins at the run's first pixel. */
+void ew_texture_start(ew_sampler *s, const ew_raster *raster, const ew_run *run);
+
+/* The colours of the piece. Pixels whose texel is left out are no longer live. */
+void ew_texture_sample(ew_sampler *s, ew_piece *piece);
+
+/* Goes to the level behind. Returns 0 where none is wanted. */
+int ew_texture_next(ew_sampler *s, const ew_raster *raster, const ew_run *run);
 
 /* log2 of the texels per pixel, in 1/256, at most 1/150 off; 0 where it is below 0. Steps are
  * those of ew_run. */

@@ -21,7 +21,7 @@ int ew_raster_triangle(ew_raster *raster, const ew_raster_vertex *a, const ew_ra
 }
 
 /* Starts one side's edge on `row`. */
-EW_NOINLINE void start_edge(ew_raster *raster, uint8_t side, uint8_t from, uint8_t to, int32_t row)
+EW_ALWAYS_INLINE void start_edge(ew_raster *raster, uint8_t side, uint8_t from, uint8_t to, int32_t row)
 {
     const ew_corners *c = &raster->work.corners;
     ew_edge_start(&raster->work.edge[side], c->x[from], c->y[from], c->x[to], c->y[to], row);
@@ -48,6 +48,7 @@ static void order(ew_corners *c)
 EW_NOINLINE int place(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *c)
 {
     ew_corners *corners = &raster->work.corners;
+    EW_KEEP_ORDER(corners); /* as in span.c */
     ew_snapped *sx = corners->x, *sy = corners->y;
     corners->v[0] = a, corners->v[1] = b, corners->v[2] = c;
     for (int i = 0; i < 3; i++) {
@@ -80,6 +81,7 @@ int ew_raster_triangle_in_range(ew_raster *raster, const ew_raster_vertex *a, co
     ew_trace_triangle(a, b, c, raster->work.triangle.rung);
 #endif
     const ew_corners *k = &raster->work.corners;
+    EW_KEEP_ORDER(k);
     int reached = 0;
     start_edge(raster, k->longest, k->top, k->bottom, k->first);
     if (k->first < k->turn) {
