@@ -95,6 +95,18 @@ typedef struct ew_mesh {
     uint8_t uv_fraction_bits;       /* of the vertices' u and v, 0 to 12                     */
 } ew_mesh;
 
+/* What ew_scene_draw needs while it draws. */
+typedef struct ew_scene_work {
+    ew_projection projection;
+    ew_viewport viewport;
+    const ew_mat34 *view;
+    ew_mat34 node_view, model_view;
+    ew_screen_vertex *vertices;
+    ew_mesh mesh;
+    int32_t drawn;
+    uint32_t primitive, left; /* the next one's number, and how many the node has left      */
+} ew_scene_work;
+
 /* The memory of the geometry layer: the caller's, about 1100 bytes. What is kept here takes no
  * room on the stack while a triangle is drawn. */
 typedef struct ew_geometry {
@@ -104,14 +116,9 @@ typedef struct ew_geometry {
     ew_raster_vertex corner[3]; /* the triangle at hand                                    */
     ew_clip_vertex polygon[2][EW_CLIP_MAX];
     const ew_clip_vertex *clipped; /* the one of the two with the clipper's result         */
+    int clipped_count, clipped_next, clipped_drawn;
     int64_t clip_near_w;        /* the near distance in the clipper's unit                 */
-    struct {                    /* of ew_scene_draw                                        */
-        ew_projection projection;
-        ew_viewport viewport;
-        ew_mat34 node_view, model_view;
-        ew_screen_vertex *vertices;
-        ew_mesh mesh;
-    } scene;
+    ew_scene_work scene;
 } ew_geometry;
 
 /* Points the layer at a raster context. */

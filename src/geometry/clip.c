@@ -179,14 +179,14 @@ static EW_OWN_FRAME int clip(ew_geometry *g, const ew_mesh *mesh, const uint16_t
 
 int ew_draw_clipped(ew_geometry *g, const ew_mesh *mesh, const uint16_t index[3])
 {
-    int count = clip(g, mesh, index), drawn = 0;
-    if (count < 3) return 0;
-    for (int i = 0; i < count; i++) {
-        fan_corner(g, i, mesh, index);
-        if (i < 2) continue;
+    g->clipped_count = clip(g, mesh, index);
+    g->clipped_drawn = 0;
+    for (g->clipped_next = 0; g->clipped_next < g->clipped_count; g->clipped_next++) {
+        fan_corner(g, g->clipped_next, mesh, index);
+        if (g->clipped_next < 2) continue;
         int result = ew_raster_triangle_in_range(g->raster, &g->corner[0], &g->corner[1], &g->corner[2]);
         if (result < 0) return result;
-        drawn |= result;
+        g->clipped_drawn |= result;
     }
-    return drawn;
+    return g->clipped_drawn;
 }

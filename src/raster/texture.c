@@ -53,11 +53,13 @@ static uint32_t period_of(uint32_t size, int wrap)
     return EW_WITH_WRAPS && wrap == EW_WRAP_MIRROR ? 2u * size : size;
 }
 
-/* The whole part of u modulo the period, the fraction as it is. */
-static uint64_t within_period(uint64_t u, uint32_t size, int wrap, uint32_t inverse)
+static uint64_t with_whole(uint64_t u, uint32_t whole) { return (uint64_t)whole << 32 | (uint32_t)(u & 0xFFFFFFFFu); }
+
+/* The whole part of a position modulo the period. */
+static uint32_t within_period(uint32_t whole, uint32_t size, int wrap, uint32_t inverse)
 {
     const uint32_t period = period_of(size, wrap);
-    uint32_t whole = (uint32_t)(u >> 32), r;
+    uint32_t r;
     if (!EW_WITH_WRAPS || is_power_of_two(period)) {
         r = whole & (period - 1u);
     } else {
@@ -69,7 +71,7 @@ static uint64_t within_period(uint64_t u, uint32_t size, int wrap, uint32_t inve
         if (r >= period) r -= period;
         if (negative) r = period - 1u - r;
     }
-    return (uint64_t)r << 32 | (uint32_t)(u & 0xFFFFFFFFu);
+    return r;
 }
 
 /* floor(u ratio / 2^32), u as q32.32 with its sign. */
@@ -91,8 +93,8 @@ EW_NOINLINE void axis_start(ew_axis *a, uint32_t level, int wrap, uint32_t inver
     a->period = clamped ? 0 : period_of(a->size, wrap);
     if (!clamped) {
         const uint64_t whole = (uint64_t)period_of(size, wrap) << 32;
-        a->at = within_period(a->at, size, wrap, inverse);
-        a->step = within_period(a->step, size, wrap, inverse);
+        a->at = with_whole(a->at, within_period((uint32_t)(a->at >> 32), size, wrap, inverse));
+        a->step = with_whole(a->step, within_period((uint32_t)(a->step >> 32), size, wrap, inverse));
         if (a->step > whole >> 1) a->step -= whole; /* the smaller step loses less when it is scaled */
     }
     if (EW_WITH_MIPS && a->size != size) {
@@ -130,7 +132,7 @@ static uint32_t texel_index(const ew_axis *a, uint32_t next)
 #if EW_TRACE
 ew_q20_12 ew_texture_traced(uint64_t u, uint32_t size, int wrap)
 {
-    if (wrap != EW_WRAP_CLAMP) u = within_period(u, size, wrap, ew_texture_inverse(size));
+    if (wrap != EW_WRAP_CLAMP) u = with_whole(u, within_period((uint32_t)(u >> 32), size, wrap, ew_texture_inverse(size)));
     return (ew_q20_12)(uint32_t)(u >> 20 & 0xFFFFFFFFu);
 }
 #endif
@@ -261,6 +263,8 @@ static void sample_pixel(ew_sampler *s, uint32_t fu, uint32_t fv, uint32_t colum
         for (int j = 0; j < 3; j++) s->texel[j] = (uint16_t)(s->sum[j] >> 5);
         return;
     }
+#else
+    (void)fu, (void)fv;
 #endif
     fetch(s, column, row);
 }

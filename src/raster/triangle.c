@@ -21,7 +21,7 @@ int ew_raster_triangle(ew_raster *raster, const ew_raster_vertex *a, const ew_ra
 }
 
 /* Starts one side's edge on `row`. */
-EW_ALWAYS_INLINE void start_edge(ew_raster *raster, uint8_t side, uint8_t from, uint8_t to, int32_t row)
+EW_NOINLINE void start_edge(ew_raster *raster, uint8_t side, uint8_t from, uint8_t to, int32_t row)
 {
     const ew_corners *c = &raster->work.corners;
     ew_edge_start(&raster->work.edge[side], c->x[from], c->y[from], c->x[to], c->y[to], row);

@@ -484,22 +484,26 @@ int32_t ew_scene_draw(const ew_scene *scene, const ew_scene_camera *camera, cons
 {
     int error = set_projection(&geometry->scene.projection, camera, viewport);
     if (error) return error;
-    geometry->scene.viewport = *viewport;
-    geometry->scene.vertices = scratch;
-    int32_t drawn = 0;
+    /* what is needed after a primitive is drawn lies here, too: less on the stack below it */
+    ew_scene_work *work = &geometry->scene;
+    work->viewport = *viewport;
+    work->vertices = scratch;
+    work->view = &camera->view;
+    work->drawn = 0;
     for (uint32_t i = 0; i < scene->section[EW_SECTION_NODE].count; i++) {
         const uint8_t *node = record(scene, EW_SECTION_NODE, i);
-        uint32_t number = u16_at(node + 4), left = u16_at(node + 6);
-        if (!left) continue;
-        error = ew_mat34_mul(&geometry->scene.node_view, &camera->view, &world[i]);
+        work->primitive = u16_at(node + 4);
+        work->left = u16_at(node + 6);
+        if (!work->left) continue;
+        error = ew_mat34_mul(&work->node_view, work->view, &world[i]);
         if (error) return error;
-        for (; left; left--) {
-            error = prepare_primitive(scene, number++, geometry);
+        for (; work->left; work->left--) {
+            error = prepare_primitive(scene, work->primitive++, geometry);
             if (error) return error;
-            int32_t result = ew_draw_triangles(geometry, &geometry->scene.mesh);
+            int32_t result = ew_draw_triangles(geometry, &work->mesh);
             if (result < 0) return result;
-            drawn += result;
+            work->drawn += result;
         }
     }
-    return drawn;
+    return work->drawn;
 }
