@@ -375,7 +375,7 @@ EW_NOINLINE int start_piece(ew_raster *raster, int32_t x, int32_t y, int32_t n)
     const ew_triangle *t = &raster->work.triangle;
     const ew_linear *l = &raster->work.now.span.linear;
     EW_KEEP_ORDER(t);
-    const int down = smaller(t->w_lead + l->align, 31);
+    const int down = (int)smaller(t->w_lead + l->align, 31);
     const uint32_t w = depth_of(l->w, down), dw = depth_step(l->dw, down);
     if (is_plain(t, w, dw, n)) {
         const size_t offset = (size_t)y * raster->target.stride + (size_t)x;
