@@ -4,6 +4,8 @@
 
 #include <stdint.h>
 
+#include "edgewalk/raster.h"
+
 /* What a target has room for:
  *   0  fixed-point functions and the set of triangles (AVR: 8 KB of RAM, 16-bit int)
  *   1  and the standard scenes A, C, D and E at 64x48 (16 KB)
@@ -22,6 +24,7 @@
 #define SAME_BITS_PIXELS (64 * 12)
 #endif
 extern uint16_t same_colour[SAME_BITS_PIXELS], same_depth[SAME_BITS_PIXELS];
+extern ew_raster same_raster; /* one context for all: small boards have no room for two */
 
 /* Prints `hash SCENE METHOD TOLERANCE SIZE HASH`: the tolerance in 1/16 px, `-` for what does
  * not apply. */

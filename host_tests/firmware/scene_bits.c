@@ -11,7 +11,6 @@
 enum { MOST_VERTICES = SAME_BITS_ROOM >= 2 ? 33 * 33 : 4 };
 
 static ew_screen_vertex screen[MOST_VERTICES];
-static ew_raster raster;
 static ew_geometry geometry;
 
 static void draw(const bench_scene *s, const bench_method *method, uint16_t tolerance, uint16_t width,
@@ -25,10 +24,10 @@ static void draw(const bench_scene *s, const bench_method *method, uint16_t tole
     const ew_material material = { .texture = &texture, .tolerance = tolerance, .rung = method->rung };
     const ew_mesh mesh = { .vertices = s->vertices, .screen = screen, .indices = s->indices,
                            .index_count = s->index_count, .uv_fraction_bits = 4 };
-    int32_t result = ew_raster_init(&raster, &target);
-    ew_raster_clear(&raster, 0);
-    if (!result) result = ew_raster_set_material(&raster, &material);
-    ew_geometry_init(&geometry, &raster);
+    int32_t result = ew_raster_init(&same_raster, &target);
+    ew_raster_clear(&same_raster, 0);
+    if (!result) result = ew_raster_set_material(&same_raster, &material);
+    ew_geometry_init(&geometry, &same_raster);
     if (!result) result = bench_view(&geometry.transform, width);
     ew_transform_vertices(&geometry.transform, s->vertices, s->vertex_count, screen);
     if (!result) result = ew_draw_triangles(&geometry, &mesh);

@@ -43,16 +43,15 @@ static uint32_t draw(const ew_target *picture, const ew_material *material)
     int drawn = 0, result = 0;
     for (int band = 0; band < BANDS && result >= 0; band++) {
         generator g = { 2463534242u };
-        ew_raster raster;
         target.dither_y = (uint16_t)(band * BAND_ROWS);
-        result = ew_raster_init(&raster, &target);
-        if (!result) result = ew_raster_set_material(&raster, material);
-        if (!result) result = ew_raster_set_fog(&raster, 0xC618, UINT32_C(1) << 31, UINT32_C(1) << 27);
-        ew_raster_clear(&raster, 0x18E3);
+        result = ew_raster_init(&same_raster, &target);
+        if (!result) result = ew_raster_set_material(&same_raster, material);
+        if (!result) result = ew_raster_set_fog(&same_raster, 0xC618, UINT32_C(1) << 31, UINT32_C(1) << 27);
+        ew_raster_clear(&same_raster, 0x18E3);
         for (int i = 0; i < TRIANGLES; i++) {
             ew_raster_vertex corner[3];
             for (int k = 0; k < 3; k++) any_corner(&g, &corner[k], band * (int32_t)BAND_ROWS);
-            if (result >= 0) result = ew_raster_triangle(&raster, &corner[0], &corner[1], &corner[2]);
+            if (result >= 0) result = ew_raster_triangle(&same_raster, &corner[0], &corner[1], &corner[2]);
             drawn += result > 0;
         }
         hash = picture_hash(hash, same_colour, units);
