@@ -2,7 +2,7 @@
 
 #include "../../examples/firmware/board/board.h"
 
-uint16_t same_colour[SAME_BITS_PIXELS], same_depth[SAME_BITS_PIXELS];
+struct same_picture same_picture;
 ew_raster same_raster;
 
 void print_hash(const char *scene, const char *method, int tolerance, const char *size, uint32_t hash)

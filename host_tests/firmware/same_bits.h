@@ -23,7 +23,13 @@
 #else
 #define SAME_BITS_PIXELS (64 * 12)
 #endif
-extern uint16_t same_colour[SAME_BITS_PIXELS], same_depth[SAME_BITS_PIXELS];
+/* The byte between puts one of the two at an odd address where that will do (AVR): the core
+ * once refused those. */
+extern struct same_picture {
+    uint16_t colour[SAME_BITS_PIXELS];
+    uint8_t between;
+    uint16_t depth[SAME_BITS_PIXELS];
+} same_picture;
 extern ew_raster same_raster; /* one context for all: small boards have no room for two */
 
 /* Prints `hash SCENE METHOD TOLERANCE SIZE HASH`: the tolerance in 1/16 px, `-` for what does

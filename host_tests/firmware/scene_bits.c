@@ -18,7 +18,7 @@ static void draw(const bench_scene *s, const bench_method *method, uint16_t tole
 {
     const uint16_t height = (uint16_t)(width * 3u / 4u);
     const uint32_t pixels = (uint32_t)width * height;
-    const ew_target target = { .colour = same_colour, .depth = same_depth,
+    const ew_target target = { .colour = same_picture.colour, .depth = same_picture.depth,
                                .width = width, .height = height, .stride = width };
     const ew_texture texture = { .texels = bench_texture, .width = 256, .height = 256 };
     const ew_material material = { .texture = &texture, .tolerance = tolerance, .rung = method->rung };
@@ -32,8 +32,8 @@ static void draw(const bench_scene *s, const bench_method *method, uint16_t tole
     ew_transform_vertices(&geometry.transform, s->vertices, s->vertex_count, screen);
     if (!result) result = ew_draw_triangles(&geometry, &mesh);
     if (result <= 0) print_failure(s->name, method->name);
-    uint32_t hash = picture_hash(PICTURE_HASH_START, same_colour, pixels);
-    print_hash(s->name, method->name, tolerance, size, picture_hash(hash, same_depth, pixels));
+    uint32_t hash = picture_hash(PICTURE_HASH_START, same_picture.colour, pixels);
+    print_hash(s->name, method->name, tolerance, size, picture_hash(hash, same_picture.depth, pixels));
 }
 
 void scene_bits(void)

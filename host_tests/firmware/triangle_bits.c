@@ -54,8 +54,8 @@ static uint32_t draw(const ew_target *picture, const ew_material *material)
             if (result >= 0) result = ew_raster_triangle(&same_raster, &corner[0], &corner[1], &corner[2]);
             drawn += result > 0;
         }
-        hash = picture_hash(hash, same_colour, units);
-        hash = picture_hash(hash, same_depth, WIDTH * BAND_ROWS);
+        hash = picture_hash(hash, same_picture.colour, units);
+        hash = picture_hash(hash, same_picture.depth, WIDTH * BAND_ROWS);
     }
     if (result < 0 || drawn < TRIANGLES) print_failure("triangles", ew_error_text(result));
     return hash;
@@ -109,7 +109,7 @@ void triangle_bits(void)
     for (unsigned i = 0; i < sizeof texels / sizeof *texels; i++) texels[i] = (uint16_t)random32(&g);
     for (unsigned i = 0; i < sizeof cases / sizeof *cases; i++) {
         const triangle_case *c = &cases[i];
-        const ew_target target = { .colour = same_colour, .depth = same_depth,
+        const ew_target target = { .colour = same_picture.colour, .depth = same_picture.depth,
                                    .width = WIDTH, .height = BAND_ROWS, .stride = WIDTH,
                                    .format = c->target_format, .dither = c->dither };
         const ew_texture texture = { .texels = texels, .width = TEXTURE, .height = TEXTURE, .palette = texels,

@@ -44,7 +44,7 @@ typedef enum ew_target_format {
 } ew_target_format;
 
 typedef struct ew_target {
-    void *colour;     /* rows of `stride` pixels; 16-bit formats are aligned to 2         */
+    void *colour;     /* rows of `stride` pixels; 16-bit formats are aligned as uint16_t  */
     uint16_t *depth;  /* the same shape, or NULL: no depth test and no depth written      */
     uint16_t width, height; /* 1 to 4096                                                  */
     uint16_t stride;  /* pixels from one row to the next, of both; at least width, and
@@ -80,7 +80,7 @@ typedef enum ew_wrap {
 
 typedef struct ew_texture {
     const void *texels;     /* rows from the top, `width` to a row; level after level, each
-                               max(1, size >> level) wide and high; RGB565 aligned to 2   */
+                               max(1, size >> level) wide and high; RGB565 aligned as uint16_t */
     uint16_t width, height; /* of the first level, 1 to 2048                              */
     const uint16_t *palette; /* RGB565: 256, 16 or 2 entries; for palette formats only    */
     const uint8_t *mask;    /* with EW_ALPHA_MASK only: a bit per texel, 1 is drawn; rows and

@@ -3,7 +3,16 @@
 #ifndef EW_RASTER_PIXEL_H
 #define EW_RASTER_PIXEL_H
 
+#include <stddef.h>
+
 #include "edgewalk/raster.h"
+
+/* Whether 16-bit items may lie there: 8-bit machines take them at odd addresses, too. */
+static inline int ew_is_aligned16(const void *p)
+{
+    struct probe { char before; uint16_t item; };
+    return (uintptr_t)p % offsetof(struct probe, item) == 0;
+}
 
 /* ---- packed rows: 2^log2_bits bits per item, up to 8, the left one in the high bits ---- */
 

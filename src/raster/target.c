@@ -25,14 +25,14 @@ int ew_target_check(const ew_target *target)
 {
     if (!target->colour || target->width < 1 || target->width > EW_TARGET_MAX || target->height < 1 ||
         target->height > EW_TARGET_MAX || target->stride < target->width || target->dither > 1 ||
-        target->format > EW_TARGET_MONO || ((uintptr_t)target->depth & 1u)) {
+        target->format > EW_TARGET_MONO || !ew_is_aligned16(target->depth)) {
         return EW_ERR_ARGUMENT;
     }
     if (target->format >= sizeof layouts / sizeof *layouts || (!EW_WITH_DITHER && target->dither)) {
         return EW_ERR_UNSUPPORTED;
     }
     int log2_bits = layouts[target->format].log2_bits;
-    int whole = log2_bits == 4 ? !((uintptr_t)target->colour & 1u) : !(target->stride & ew_packed_low(log2_bits));
+    int whole = log2_bits == 4 ? ew_is_aligned16(target->colour) : !(target->stride & ew_packed_low(log2_bits));
     return whole ? EW_OK : EW_ERR_ARGUMENT;
 }
 

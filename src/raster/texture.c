@@ -26,8 +26,8 @@ int ew_texture_check(const ew_texture *t, int filter, int flags)
     if (!t->texels || !is_size(t->width) || !is_size(t->height) || t->format > EW_TEXTURE_PALETTE1 ||
         t->wrap_u > EW_WRAP_MIRROR || t->wrap_v > EW_WRAP_MIRROR ||
         t->levels > 32 - ew_clz32((uint32_t)t->width | t->height) ||
-        (t->format >= EW_TEXTURE_PALETTE8 && (!t->palette || ((uintptr_t)t->palette & 1u))) ||
-        (t->format == EW_TEXTURE_RGB565 && ((uintptr_t)t->texels & 1u)) || ((flags & EW_ALPHA_MASK) && !t->mask)) {
+        (t->format >= EW_TEXTURE_PALETTE8 && (!t->palette || !ew_is_aligned16(t->palette))) ||
+        (t->format == EW_TEXTURE_RGB565 && !ew_is_aligned16(t->texels)) || ((flags & EW_ALPHA_MASK) && !t->mask)) {
         return EW_ERR_ARGUMENT;
     }
     if ((!EW_WITH_TEXTURE_FORMATS && t->format) || (!EW_WITH_MIPS && t->levels > 1) ||
