@@ -1,5 +1,5 @@
 /* A set of triangles on a 64x48 picture with a 16x16 texture, small enough for 8 KB of RAM:
- * four bands of twelve rows, each drawn with the set moved up to it. */
+ * four bands of twelve rows. */
 #include "same_bits.h"
 
 #include "../../examples/firmware/picture_hash.h"
@@ -20,10 +20,10 @@ typedef struct triangle_case {
 } triangle_case;
 
 /* Most are of the picture's size and many reach over its borders; near/z over a range of 32. */
-static void any_corner(generator *g, ew_raster_vertex *corner, int32_t first_row)
+static void any_corner(generator *g, ew_raster_vertex *corner)
 {
     corner->x = random_between(g, -20 * INT32_C(4096), 84 * INT32_C(4096));
-    corner->y = random_between(g, -20 * INT32_C(4096), 68 * INT32_C(4096)) - first_row * 4096;
+    corner->y = random_between(g, -20 * INT32_C(4096), 68 * INT32_C(4096));
     corner->w = (UINT32_C(1) << 31) >> random_between(g, 0, 4);
     corner->w -= random32(g) % (corner->w / 2u);
     corner->u = random_between(g, -64 * INT32_C(4096), 64 * INT32_C(4096));
@@ -43,14 +43,14 @@ static uint32_t draw(const ew_target *picture, const ew_material *material)
     int drawn = 0, result = 0;
     for (int band = 0; band < BANDS && result >= 0; band++) {
         generator g = { 2463534242u };
-        target.dither_y = (uint16_t)(band * BAND_ROWS);
+        target.first_row = (uint16_t)(band * BAND_ROWS);
         result = ew_raster_init(&same_raster, &target);
         if (!result) result = ew_raster_set_material(&same_raster, material);
         if (!result) result = ew_raster_set_fog(&same_raster, 0xC618, UINT32_C(1) << 31, UINT32_C(1) << 27);
         ew_raster_clear(&same_raster, 0x18E3);
         for (int i = 0; i < TRIANGLES; i++) {
             ew_raster_vertex corner[3];
-            for (int k = 0; k < 3; k++) any_corner(&g, &corner[k], band * (int32_t)BAND_ROWS);
+            for (int k = 0; k < 3; k++) any_corner(&g, &corner[k]);
             if (result >= 0) result = ew_raster_triangle(&same_raster, &corner[0], &corner[1], &corner[2]);
             drawn += result > 0;
         }

@@ -223,7 +223,7 @@ static int threshold(int x, int y)
 static unsigned to_bits(const ew_target *target, int c, int b, int x, int y)
 {
     if (!target->dither) return (unsigned)(c >> (12 - b));
-    int t = (int)floor(ldexp(threshold(x, y + target->dither_y), 6 - b));
+    int t = (int)floor(ldexp(threshold(x, y), 6 - b));
     return (unsigned)((c - (c >> b) + t) >> (12 - b));
 }
 
@@ -242,7 +242,7 @@ unsigned ref_convert(const ew_target *target, const int c[3], int x, int y)
 
 static uint8_t *row_of(const ew_target *target, int y)
 {
-    return (uint8_t *)target->colour + (size_t)y * ref_row_bytes(target->stride, ref_target_bits(target->format));
+    return (uint8_t *)target->colour + (size_t)(y - target->first_row) * ref_row_bytes(target->stride, ref_target_bits(target->format));
 }
 
 unsigned ref_read(const ew_target *target, int x, int y)
@@ -266,7 +266,7 @@ static unsigned blended(const ew_target *target, int blend, unsigned value, unsi
         int b = channel_bits(target->format, k);
         below -= b;
         unsigned top = (1u << b) - 1, mine = value >> below & top, sum = mine + (old >> below & top);
-        unsigned round = target->dither && (x + y + target->dither_y) % 2;
+        unsigned round = target->dither && (x + y) % 2;
         result = (result << b) + (blend == EW_BLEND_HALF ? (sum + round) / 2 : sum > top ? top : sum);
     }
     return result;
@@ -289,7 +289,7 @@ static void draw_pixel(const ew_target *target, const ew_material *m, const ref_
                        int lambda256)
 {
     const int x = run->x + i, y = run->y;
-    uint16_t *depth = target->depth ? target->depth + (size_t)y * target->stride + x : NULL;
+    uint16_t *depth = target->depth ? target->depth + (size_t)(y - target->first_row) * target->stride + x : NULL;
     int64_t w = run->w + i * run->dw;
     if (w < 0) w = 0;
     int d = at_most(at_least((int)(w >> 15), 1), 65535);

@@ -73,7 +73,7 @@ static void random_target(ew_target *t)
     t->height = H;
     t->stride = (uint16_t)((t->width + below(9) + per_byte - 1) / per_byte * per_byte);
     t->dither = (uint8_t)below(2);
-    t->dither_y = (uint16_t)(chance(2) ? 0 : test_random());
+    t->first_row = (uint16_t)(chance(2) ? 0 : below(EW_TARGET_MAX - H + 1));
     t->depth = chance(4) ? NULL : before.depth;
 }
 
@@ -118,7 +118,7 @@ static void random_run(ref_run *r, const ew_target *target, const ew_texture *t)
 {
     memset(r, 0, sizeof *r);
     r->x = (int)below(target->width);
-    r->y = (int)below(target->height);
+    r->y = target->first_row + (int)below(target->height);
     const int mips = t->levels > 1;
     const uint32_t room = (uint32_t)(target->width - r->x);
     r->n = 1 + (int)below(mips && room > 16 ? 16 : room);
@@ -189,10 +189,10 @@ static void say(const fill_case *c)
     const ew_texture *t = &c->texture;
     const ew_material *m = &c->material;
     const ref_run *r = &c->run;
-    test_context("target format %d dither %d+%u stride %d%s; texture %s %dx%d format %d wraps %d %d levels %d key %x; "
+    test_context("target format %d dither %d rows from %u stride %d%s; texture %s %dx%d format %d wraps %d %d levels %d key %x; "
                  "colour %x rung %d flags %d blend %d filter %d; run %d,%d n %d w %lld %+lld u %lld %+lld v %lld %+lld "
                  "down %lld %lld shade %lld %+lld; fog %x %lld..%lld",
-                 g->format, g->dither, g->dither_y, g->stride, g->depth ? "" : " no depth", m->texture ? "" : "(none)",
+                 g->format, g->dither, g->first_row, g->stride, g->depth ? "" : " no depth", m->texture ? "" : "(none)",
                  t->width, t->height, t->format, t->wrap_u, t->wrap_v, t->levels, t->key, m->colour, m->rung, m->flags,
                  m->blend, m->filter, r->x, r->y, r->n, (long long)r->w, (long long)r->dw, (long long)r->u,
                  (long long)r->du, (long long)r->v, (long long)r->dv, (long long)r->u_down, (long long)r->v_down,
@@ -291,7 +291,7 @@ static void near_depths(const fill_case *c)
 {
     for (int i = 0; i < c->run.n; i++) {
         const int64_t w = c->run.w + i * c->run.dw, d = w < 0 ? 0 : w >> 15 > 65535 ? 65535 : w >> 15;
-        before.depth[GUARD + c->run.y * c->target.stride + c->run.x + i] = (uint16_t)(d + (int64_t)below(3) - 1);
+        before.depth[GUARD + (c->run.y - c->target.first_row) * c->target.stride + c->run.x + i] = (uint16_t)(d + (int64_t)below(3) - 1);
     }
 }
 
@@ -327,7 +327,7 @@ static void any_run(void **state)
         ew_fill_any(&raster, &run, c.run.n);
         const ew_target mine = target_in(&c, &drawn), was = target_in(&c, &before);
         for (int i = 0; i < c.run.n; i++) { /* put them back: then nothing may have changed */
-            const int x = c.run.x + i, y = c.run.y, bits = ref_target_bits(mine.format);
+            const int x = c.run.x + i, y = c.run.y - mine.first_row, bits = ref_target_bits(mine.format);
             uint8_t *row = (uint8_t *)mine.colour + (size_t)y * ref_row_bytes(mine.stride, bits);
             const uint8_t *row_was = (const uint8_t *)was.colour + (size_t)y * ref_row_bytes(mine.stride, bits);
             for (int bit = x * bits; bit < (x + 1) * bits; bit++) {
@@ -629,7 +629,8 @@ static void triangles_and_clears(void **state)
         if (!begin(&raster, &c)) continue;
         const uint16_t background = (uint16_t)test_random();
         const ew_target target = target_in(&c, &expected);
-        const ew_rect part = { (uint16_t)below(target.width), 1, target.width, (uint16_t)(2 + below(H - 1)) };
+        const ew_rect part = { (uint16_t)below(target.width), (uint16_t)(target.first_row + 1), target.width,
+                               (uint16_t)(target.first_row + 2 + below(H - 1)) };
         assert_int_equal(ew_raster_set_scissor(&raster, &part), EW_OK);
         ew_raster_clear(&raster, background);
         const ew_uq1_31 w = 65536 + below((1u << 31) - 65536);
@@ -638,7 +639,7 @@ static void triangles_and_clears(void **state)
         const ew_colour888 light = { (uint8_t)test_random(), (uint8_t)test_random(), (uint8_t)test_random() };
         ew_raster_vertex corner[4];
         for (int i = 0; i < 4; i++) {
-            const int32_t x = i >= 2 ? W * 4096 : 0, y = i == 1 || i == 2 ? H * 4096 : 0;
+            const int32_t x = i >= 2 ? W * 4096 : 0, y = (target.first_row + (i == 1 || i == 2 ? H : 0)) * 4096;
             corner[i] = (ew_raster_vertex){ .x = x, .y = y, .w = w, .u = x + u0, .v = y + v0, .colour = light };
         }
         assert_true(ew_raster_triangle(&raster, &corner[0], &corner[1], &corner[2]) >= 0);
@@ -654,7 +655,7 @@ static void triangles_and_clears(void **state)
             r.shade[2] = (light.b + (light.b >> 7)) << 16;
             ref_fill(&target, &clear, &c.fog, &r, 0);
             for (int x = part.x0; x < part.x1; x++) {
-                if (target.depth) target.depth[y * target.stride + x] = 0;
+                if (target.depth) target.depth[(y - target.first_row) * target.stride + x] = 0;
             }
             ref_fill(&target, &c.material, &c.fog, &r, 0);
         }
@@ -682,7 +683,9 @@ static void arguments_are_checked(void **state)
     assert_int_equal(ew_raster_init(&raster, &t), EW_ERR_ARGUMENT);
     t.colour = memory, t.depth = (uint16_t *)(void *)((uint8_t *)memory + 1);
     assert_int_equal(ew_raster_init(&raster, &t), EW_ERR_ARGUMENT);
-    t.depth = NULL;
+    t.depth = NULL, t.first_row = EW_TARGET_MAX - 3;
+    assert_int_equal(ew_raster_init(&raster, &t), EW_ERR_ARGUMENT);
+    t.first_row = 0;
 #if EW_WITH_TARGET_FORMATS
     t.format = EW_TARGET_GREY4, t.stride = 7;
     assert_int_equal(ew_raster_init(&raster, &t), EW_ERR_ARGUMENT);

@@ -50,9 +50,10 @@ typedef struct ew_target {
     uint16_t stride;  /* pixels from one row to the next, of both; at least width, and
                          whole bytes: a multiple of 2 for EW_TARGET_GREY4, of 8 for _MONO */
     uint8_t format;   /* ew_target_format                                                 */
-    uint8_t dither;   /* 1: ordered 8 x 8 dither, by position in the target               */
-    uint16_t dither_y; /* where a target that is a band begins in the whole picture, so
-                          that bands agree; any                                           */
+    uint8_t dither;   /* 1: ordered 8 x 8 dither, by position in the picture              */
+    uint16_t first_row; /* the row of the whole picture that the memory begins with, 0 unless
+                          the target is a band of it; with the height, at most 4096. Whatever
+                          is said of rows elsewhere counts those of the picture           */
 } ew_target;
 
 /* Pixels x0 <= x < x1, y0 <= y < y1. */
@@ -180,6 +181,12 @@ int ew_raster_init(ew_raster *raster, const ew_target *target);
  * EW_ERR_ARGUMENT for one that leaves the target or is inside out. */
 int ew_raster_set_scissor(ew_raster *raster, const ew_rect *rect);
 
+/* Goes to other rows of the same picture: memory for `height` of them from `first_row` on, as in
+ * ew_target. The scissor is then all of these rows and its columns are what they were; everything
+ * else stays. Returns EW_OK; EW_ERR_ARGUMENT as ew_raster_init, and where one has depth and the
+ * other has none. */
+int ew_raster_set_rows(ew_raster *raster, void *colour, uint16_t *depth, uint16_t first_row, uint16_t height);
+
 /* Copies *material and the texture's description, not its texels, palette or mask. The
  * constant rung takes no texture. Returns EW_OK, or EW_ERR_ARGUMENT or EW_ERR_UNSUPPORTED,
  * and then the material is unchanged. */
@@ -220,6 +227,36 @@ int ew_raster_triangle(ew_raster *raster, const ew_raster_vertex *a, const ew_ra
  * is the caller's promise, and not checked. */
 int ew_raster_triangle_in_range(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_vertex *b,
                                 const ew_raster_vertex *c);
+
+/* ---- a triangle some rows at a time ----
+ *
+ * ew_raster_begin sets a triangle up as ew_raster_triangle_in_range does; its first row is the
+ * scissor's first or a later one, and its last one lies above `end`, which may be below the
+ * scissor. Then either ew_raster_draw_begun draws what of it lies in the scissor, or
+ * ew_raster_keep moves it into memory of the caller's, for ew_raster_draw_active to go on with: each
+ * call draws what of the rest lies in the scissor, whose rows must begin with the triangle's next
+ * one. The material has to be that of the set-up, the scissor's columns, too. However a
+ * triangle is cut into rows, its pixels are those of ew_raster_triangle. */
+
+/* Returns 1, 0 when there is nothing to draw, or EW_ERR_RANGE as ew_raster_triangle. */
+int ew_raster_begin(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *c,
+                    uint16_t end);
+
+/* The first row below the triangle that ew_raster_begin made ready, or `end`. */
+uint16_t ew_raster_begun_end(const ew_raster *raster);
+
+/* Draws it without keeping it. Returns whether a pixel was reached. */
+int ew_raster_draw_begun(ew_raster *raster);
+
+/* What it takes to keep it: a multiple of 8, at most sizeof(ew_active). */
+size_t ew_raster_active_bytes(const ew_raster *raster);
+
+/* Keeps it, once, before it is drawn. `active` has room for ew_raster_active_bytes and the
+ * alignment of an ew_active. */
+void ew_raster_keep(ew_raster *raster, ew_active *active);
+
+/* Returns whether a pixel was reached. It is done when active->row is active->end. */
+int ew_raster_draw_active(ew_raster *raster, ew_active *active);
 
 #if EW_TRACE
 /* For tests: what was set up, and every fragment before its depth test. u and v are modulo

@@ -32,20 +32,15 @@ enum {
     EW_PLANE_W = 0, EW_PLANE_U, EW_PLANE_V, EW_PLANE_SHADE, EW_PLANES = 1 + EW_ATTRIBUTES
 };
 
+/* What is read most lies within short offsets. What follows the planes is for generic fills
+ * only: ew_active leaves it out where it can. */
 typedef struct ew_triangle {
-    union {
-        ew_plane32 narrow[EW_PLANES];
-        ew_plane64 wide[EW_PLANES];
-    } plane; /* 1/z, then the attributes                              */
-    int32_t column; /* the pixel column that `row` values belong to: inside the scissor and the
-                       triangle's box */
-    uint32_t u_base, v_base;    /* u and v of corner 0, top-aligned (span.c)     */
-    ew_q20_12 u_origin, v_origin; /* the same in texels                          */
-    int32_t shade_origin[3];    /* corner 0's, 2^24 is all                       */
     uint16_t run_scale;         /* of run_length in span.c                       */
     int16_t run_exponent;
     uint16_t run_tolerance;     /* 1/16 px, 0 for runs of fixed length           */
     uint16_t longest, shortest; /* run, px                                       */
+    uint16_t column; /* the pixel column that `row` values belong to: inside the scissor and the
+                        triangle's box */
     uint8_t run_shift;          /* -run_exponent, 0 to 31: of one_run_suffices   */
     uint8_t attributes;         /* how many planes follow that of w: 0, 2, 5     */
     uint8_t is_wide;
@@ -56,6 +51,13 @@ typedef struct ew_triangle {
     uint8_t w_lead;             /* 0 to 24: src/raster/triangle.h                */
     uint8_t uv_bits;            /* EW_BITS_LEAST to EW_BITS_MOST                 */
     uint8_t u_shift, v_shift;   /* left shifts that align u and v at the top, 1 to 20 */
+    uint32_t u_base, v_base;    /* u and v of corner 0, top-aligned (span.c)     */
+    union {
+        ew_plane32 narrow[EW_PLANES];
+        ew_plane64 wide[EW_PLANES];
+    } plane; /* 1/z, then the attributes                              */
+    ew_q20_12 u_origin, v_origin; /* u and v of corner 0 in texels               */
+    int32_t shade_origin[3];    /* its shades, 2^24 is all                       */
 } ew_triangle;
 
 /* A triangle's corners, snapped, and where it lies. */
@@ -63,6 +65,7 @@ typedef struct ew_corners {
     const struct ew_raster_vertex *v[3];
     ew_snapped x[3], y[3];
     int32_t first, end, from, to;    /* rows and columns of its box in the scissor */
+    int32_t steps;                   /* rows and columns of the whole box, added   */
     int32_t turn;                    /* the first row below the middle corner      */
     uint8_t top, middle, bottom;     /* numbers of corners, by y                   */
     uint8_t longest;                 /* the side of the edge from top to bottom: 0 is left */
@@ -78,6 +81,17 @@ typedef struct ew_edge {
     int32_t rise;      /* dx - step dy, 0 <= rise < dy                                     */
     int32_t dy;
 } ew_edge;
+
+/* A triangle between two of its rows. The planes that it has not got may lack behind it. */
+typedef struct ew_active {
+    uint32_t number;             /* for whoever keeps it, as `next`                          */
+    uint16_t next;
+    uint16_t row, end, turn;     /* the next row to draw, and those of ew_corners           */
+    uint8_t longest;             /* likewise                                                */
+    ew_snapped x[2], y[2];       /* the middle and the lowest corner                        */
+    ew_edge edge[2];             /* left, right                                             */
+    ew_triangle triangle;
+} ew_active;
 
 /* Differences from corner 0, in one place for both kinds of set-up. */
 typedef struct ew_basis {

@@ -13,9 +13,15 @@
  * registers than there are; and a pointer into the context a base of its own, which short
  * offsets on ARMv6-M need. */
 #define EW_KEEP_ORDER(x) __asm__("" : "+r"(x))
+/* Part of a structure; the number of bytes is constant. */
+#define EW_COPY(to, from, bytes) ((void)__builtin_memcpy(to, from, bytes))
 #else
 #define EW_ALWAYS_INLINE static inline
 #define EW_NOINLINE static
+#define EW_COPY(to, from, bytes) \
+    do { \
+        for (size_t i_ = 0; i_ < (bytes); i_++) ((unsigned char *)(to))[i_] = ((const unsigned char *)(from))[i_]; \
+    } while (0)
 #define EW_KEEP_ORDER(x) ((void)0)
 #endif
 

@@ -41,7 +41,7 @@ static void trace(const ew_raster *raster, const ew_run *run, int n)
 
 static uint16_t *depth_at(const ew_raster *raster, const ew_run *run)
 {
-    return raster->target.depth + (size_t)run->y * raster->target.stride + run->x;
+    return raster->target.depth + (size_t)(run->y - raster->target.first_row) * raster->target.stride + run->x;
 }
 
 EW_NOINLINE void test_depth(const ew_raster *raster, const ew_run *run, ew_piece *piece)

@@ -5,14 +5,21 @@
 #include "target.h"
 #include "texture.h"
 
+/* All rows of the target. */
+static void scissor_rows(ew_raster *raster)
+{
+    raster->scissor.y0 = raster->target.first_row;
+    raster->scissor.y1 = (uint16_t)(raster->target.first_row + raster->target.height);
+}
+
 int ew_raster_init(ew_raster *raster, const ew_target *target)
 {
     int error = ew_target_check(target);
     if (error) return error;
     raster->target = *target;
-    raster->scissor.x0 = raster->scissor.y0 = 0;
+    raster->scissor.x0 = 0;
     raster->scissor.x1 = target->width;
-    raster->scissor.y1 = target->height;
+    scissor_rows(raster);
     /* a share of 0 whatever 1/z is */
     raster->fog_near = raster->fog_far = raster->fog_scale = 0;
     raster->fog_colour = 0;
@@ -24,11 +31,27 @@ int ew_raster_init(ew_raster *raster, const ew_target *target)
 
 int ew_raster_set_scissor(ew_raster *raster, const ew_rect *rect)
 {
-    if (rect->x0 > rect->x1 || rect->y0 > rect->y1 || rect->x1 > raster->target.width ||
-        rect->y1 > raster->target.height) {
+    const ew_target *target = &raster->target;
+    if (rect->x0 > rect->x1 || rect->y0 > rect->y1 || rect->x1 > target->width || rect->y0 < target->first_row ||
+        rect->y1 > target->first_row + target->height) {
         return EW_ERR_ARGUMENT;
     }
     raster->scissor = *rect;
+    return EW_OK;
+}
+
+int ew_raster_set_rows(ew_raster *raster, void *colour, uint16_t *depth, uint16_t first_row, uint16_t height)
+{
+    ew_target target = raster->target;
+    target.colour = colour;
+    target.depth = depth;
+    target.first_row = first_row;
+    target.height = height;
+    const int error = ew_target_check(&target);
+    if (error) return error;
+    if (!depth != !raster->target.depth) return EW_ERR_ARGUMENT;
+    raster->target = target;
+    scissor_rows(raster);
     return EW_OK;
 }
 
@@ -114,7 +137,7 @@ void ew_raster_clear(ew_raster *raster, uint16_t rgb565)
     piece->live = 0xFF;
     for (int i = 0; i < EW_PIECE; i++) ew_decode_565(piece->colour[i], rgb565, ew_wide(target));
     for (uint16_t y = r->y0; y < r->y1; y++) {
-        const size_t row = (size_t)y * target->stride;
+        const size_t row = (size_t)(y - target->first_row) * target->stride;
         if (!as_it_is) {
             piece->x = r->x0;
             piece->y = y;

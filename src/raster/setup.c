@@ -55,11 +55,11 @@ static void basis_of_snapped(ew_basis *b, const ew_corners *c)
  * all of its rows and columns is at most 1/256 texel (docs/error-bound.md). */
 static int is_narrow(const ew_basis *b, const ew_corners *c, uint32_t w_min, uint32_t w_max, int bits)
 {
-    uint32_t steps = (uint32_t)(c->to - c->from) + (uint32_t)(c->end - c->first); /* <= 2^13 */
+    const uint32_t steps = (uint32_t)c->steps; /* not those in the scissor: a band must not decide; <= 2^20 */
     return b->reach < UINT32_C(1) << 20 && w_max / 4 <= w_min &&
            (b->area > 0) == c->positive &&
            ew_abs64(b->area) >= (uint64_t)ew_mul_u32(b->reach, b->reach / 8 + 512) &&
-           (uint64_t)(3 * steps) << bits <= (uint64_t)w_min << 2; /* 2^15 2^27 */
+           (uint64_t)(3 * steps) << bits <= (uint64_t)w_min << 2; /* 2^11 2^27, of 256 px */
 }
 
 static void weights_init(ew_weights *g, const ew_basis *b)
@@ -345,7 +345,7 @@ int ew_setup(ew_raster *raster)
     t->plain = plainness(raster, w_min, w_max);
     if (t->rung == EW_RUNG_CONSTANT) t->attributes = 0; /* corner 0's are taken everywhere */
 
-    t->column = c->from;
+    t->column = (uint16_t)c->from;
     basis_of_vertices(b, c);
     uint32_t least = smaller(smaller(w[0], w[1]), w[2]);
     t->is_wide = (uint8_t)!is_narrow(b, c, least, larger(larger(w[0], w[1]), w[2]), t->uv_bits);

@@ -378,7 +378,7 @@ EW_NOINLINE int start_piece(ew_raster *raster, int32_t x, int32_t y, int32_t n)
     const int down = (int)smaller(t->w_lead + l->align, 31);
     const uint32_t w = depth_of(l->w, down), dw = depth_step(l->dw, down);
     if (is_plain(t, w, dw, n)) {
-        const size_t offset = (size_t)y * raster->target.stride + (size_t)x;
+        const size_t offset = (size_t)(y - raster->target.first_row) * raster->target.stride + (size_t)x;
         ew_packing *k = &raster->work.now.span.fill.packing;
         EW_KEEP_ORDER(k);
         packing_init(k, raster, t);
@@ -472,12 +472,10 @@ static uint32_t wide_at(const ew_plane64 *p, int32_t columns, int align)
 }
 
 /* work.linear from x on, for as many of n pixels as it will do. Returns their number. */
-EW_NOINLINE int32_t next_of_wide(ew_raster *raster, int32_t x, int32_t n)
+EW_NOINLINE int32_t next_of_wide(ew_raster *raster, const ew_triangle *t, int32_t x, int32_t n)
 {
-    const ew_triangle *t = &raster->work.triangle;
     const ew_plane64 *p = t->plane.wide;
     ew_linear *l = &raster->work.now.span.linear;
-    EW_KEEP_ORDER(t);
     EW_KEEP_ORDER(l);
     x -= t->column;
     const uint64_t w = p[EW_PLANE_W].row + ew_wrap_mul64(p[EW_PLANE_W].dx, x);
@@ -525,29 +523,27 @@ EW_ALWAYS_INLINE void steps_start(ew_packing *k, ew_linear *s, const ew_triangle
 
 /* work.linear and the packing's 1/z for the next piece of a span that is too long for steps of
  * 32 bits. Returns its length. */
-EW_NOINLINE int32_t next_of_texture(ew_raster *raster, int32_t x, int32_t n)
+EW_NOINLINE int32_t next_of_texture(ew_raster *raster, const ew_triangle *t, int32_t x, int32_t n)
 {
     const ew_linear *l = &raster->work.now.span.linear;
     ew_packing *k = &raster->work.now.span.fill.packing;
-    n = next_of_wide(raster, x, n);
-    const int down = raster->work.triangle.w_lead + l->align;
+    n = next_of_wide(raster, t, x, n);
+    const int down = t->w_lead + l->align;
     k->loop.w = depth_of(l->w, down), k->loop.dw = depth_step(l->dw, down);
     return n;
 }
 
 /* Triangles with a texture, depth and nothing else, on the affine rung or in runs: ew_walk_rows
  * for the common case. */
-EW_ALWAYS_INLINE int rows_of_texture(ew_raster *raster, int32_t row, int32_t end, int wide)
+EW_ALWAYS_INLINE int rows_of_texture(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end, int wide)
 {
-    ew_triangle *t = &raster->work.triangle;
     const int32_t clip_left = raster->scissor.x0, clip_right = raster->scissor.x1;
-    const size_t offset = (size_t)row * raster->target.stride;
+    const size_t offset = (size_t)(row - raster->target.first_row) * raster->target.stride;
     uint16_t *colour = (uint16_t *)raster->target.colour + offset, *depth = raster->target.depth + offset;
-    ew_edge l = raster->work.edge[0], r = raster->work.edge[1]; /* or they would be read and written around each span */
+    ew_edge l = edge[0], r = edge[1]; /* or they would be read and written around each span */
     ew_span_work *span = &raster->work.now.span;
     int reached = 0;
-    EW_KEEP_ORDER(t); /* bases of their own, with short offsets from them */
-    EW_KEEP_ORDER(span);
+    EW_KEEP_ORDER(span); /* a base of its own, with short offsets from it */
     ew_linear *s = &span->linear;
     ew_packing *k = &span->fill.packing;
     packing_init(k, raster, t);
@@ -570,7 +566,7 @@ EW_ALWAYS_INLINE int rows_of_texture(ew_raster *raster, int32_t row, int32_t end
             k->loop.w = depth_of(s->w, t->w_lead);
             if (!whole) {
                 while (n > 0) {
-                    const int32_t m = next_of_texture(raster, x, n);
+                    const int32_t m = next_of_texture(raster, t, x, n);
                     piece_of_texture(k, t, s, m);
                     x += m;
                     n -= m;
@@ -587,17 +583,17 @@ EW_ALWAYS_INLINE int rows_of_texture(ew_raster *raster, int32_t row, int32_t end
         colour += raster->target.stride;
         depth += raster->target.stride;
     }
-    raster->work.edge[0] = l;
-    raster->work.edge[1] = r;
+    edge[0] = l;
+    edge[1] = r;
     return reached;
 }
-EW_NOINLINE int rows_of_narrow(ew_raster *raster, int32_t row, int32_t end)
+EW_NOINLINE int rows_of_narrow(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
 {
-    return rows_of_texture(raster, row, end, 0);
+    return rows_of_texture(raster, t, edge, row, end, 0);
 }
-EW_NOINLINE int rows_of_wide(ew_raster *raster, int32_t row, int32_t end)
+EW_NOINLINE int rows_of_wide(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
 {
-    return rows_of_texture(raster, row, end, 1);
+    return rows_of_texture(raster, t, edge, row, end, 1);
 }
 
 static void span_of_any(ew_raster *raster, int32_t x, int32_t y, int32_t n)
@@ -605,7 +601,7 @@ static void span_of_any(ew_raster *raster, int32_t x, int32_t y, int32_t n)
     const ew_triangle *t = &raster->work.triangle;
     while (n > 0) {
         int32_t m = n;
-        if (t->is_wide) m = next_of_wide(raster, x, n);
+        if (t->is_wide) m = next_of_wide(raster, t, x, n);
         else start_narrow(raster, x);
         if (start_piece(raster, x, y, m)) {
             piece_of_texture(&raster->work.now.span.fill.packing, t, &raster->work.now.span.linear, m);
@@ -635,9 +631,8 @@ EW_NOINLINE int rows_of_any(ew_raster *raster, int32_t row, int32_t end)
     return reached;
 }
 
-int ew_walk_rows(ew_raster *raster, int32_t row, int32_t end)
+int ew_walk_rows(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
 {
-    const ew_triangle *t = &raster->work.triangle;
     if (!t->is_quick) return rows_of_any(raster, row, end);
-    return t->is_wide ? rows_of_wide(raster, row, end) : rows_of_narrow(raster, row, end);
+    return t->is_wide ? rows_of_wide(raster, t, edge, row, end) : rows_of_narrow(raster, t, edge, row, end);
 }

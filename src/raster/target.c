@@ -24,7 +24,8 @@ static const layout layouts[] = {
 int ew_target_check(const ew_target *target)
 {
     if (!target->colour || target->width < 1 || target->width > EW_TARGET_MAX || target->height < 1 ||
-        target->height > EW_TARGET_MAX || target->stride < target->width || target->dither > 1 ||
+        target->height > EW_TARGET_MAX || target->first_row > EW_TARGET_MAX - target->height ||
+        target->stride < target->width || target->dither > 1 ||
         target->format > EW_TARGET_MONO || !ew_is_aligned16(target->depth)) {
         return EW_ERR_ARGUMENT;
     }
@@ -95,16 +96,16 @@ void ew_target_put(const ew_target *target, const ew_piece *piece, int blend)
     const layout *form = &layouts[EW_WITH_TARGET_FORMATS ? target->format : 0];
     const int log2_bits = form->log2_bits;
     /* whole bytes: a stride of packed pixels is a multiple of what a byte holds */
-    uint8_t *row = (uint8_t *)target->colour + (((size_t)piece->y * target->stride) << log2_bits >> 3);
+    uint8_t *row = (uint8_t *)target->colour + (((size_t)(piece->y - target->first_row) * target->stride) << log2_bits >> 3);
     const int dither = EW_WITH_DITHER && target->dither;
-    const uint32_t band_y = (uint32_t)piece->y + target->dither_y;
+    const uint32_t y = piece->y;
     for (int i = 0; i < piece->n; i++) {
         if (!(piece->live >> i & 1)) continue;
         const uint32_t x = (uint32_t)piece->x + (uint32_t)i;
         const uint32_t old = EW_WITH_BLENDS && blend ? read_pixel(target, row, x, log2_bits) : 0;
         int threshold = -1;
 #if EW_WITH_DITHER
-        if (dither) threshold = bayer[band_y & 7u][x & 7u];
+        if (dither) threshold = bayer[y & 7u][x & 7u];
 #endif
         uint32_t pixel = 0;
         int below = 1 << log2_bits; /* bits of the channels still to come */
@@ -115,7 +116,7 @@ void ew_target_put(const ew_target *target, const ew_piece *piece, int blend)
             below -= bits;
             if (EW_WITH_BLENDS && blend) {
                 uint32_t before = old >> below & (((uint32_t)1 << bits) - 1u);
-                value = mixed(value, before, bits, blend, dither ? (x ^ band_y) & 1u : 0);
+                value = mixed(value, before, bits, blend, dither ? (x ^ y) & 1u : 0);
             }
             pixel |= value << below;
         }
@@ -131,7 +132,7 @@ void ew_target_fill(const ew_target *target, ew_piece *piece, uint16_t x1)
     const uint8_t *pattern = NULL;
     for (uint32_t x = piece->x; x < x1; x += (uint32_t)piece->n) {
         const uint32_t room = 8u - (x & 7u), left = x1 - x;
-        uint8_t *to = (uint8_t *)target->colour + (((size_t)piece->y * target->stride + x) * bytes >> 3);
+        uint8_t *to = (uint8_t *)target->colour + (((size_t)(piece->y - target->first_row) * target->stride + x) * bytes >> 3);
         piece->n = (int)(room < left ? room : left);
         if (piece->n < 8 || !pattern) {
             piece->x = (uint16_t)x;

@@ -44,8 +44,9 @@ static void order(ew_corners *c)
 }
 
 /* Fills in work.corners. Returns 0 for a triangle that faces away, has no area or covers no
- * pixel centre inside the scissor. */
-EW_NOINLINE int place(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *c)
+ * pixel centre inside the scissor, whose last row is here the one above `end`. */
+EW_NOINLINE int place(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *c,
+                      int32_t end)
 {
     ew_corners *corners = &raster->work.corners;
     EW_KEEP_ORDER(corners); /* as in span.c */
@@ -61,36 +62,137 @@ EW_NOINLINE int place(ew_raster *raster, const ew_raster_vertex *a, const ew_ras
     corners->positive = area > 0;
 
     const ew_rect *clip = &raster->scissor;
-    corners->first = larger(ew_row_at(smaller(sy[0], smaller(sy[1], sy[2]))), clip->y0);
-    corners->end = smaller(ew_row_at(larger(sy[0], larger(sy[1], sy[2]))), clip->y1);
-    corners->from = larger(ew_row_at(smaller(sx[0], smaller(sx[1], sx[2]))), clip->x0);
-    corners->to = smaller(ew_row_at(larger(sx[0], larger(sx[1], sx[2]))), clip->x1);
+    const int32_t top = ew_row_at(smaller(sy[0], smaller(sy[1], sy[2])));
+    const int32_t bottom = ew_row_at(larger(sy[0], larger(sy[1], sy[2])));
+    const int32_t left = ew_row_at(smaller(sx[0], smaller(sx[1], sx[2])));
+    const int32_t right = ew_row_at(larger(sx[0], larger(sx[1], sx[2])));
+    corners->steps = bottom - top + right - left;
+    corners->first = larger(top, clip->y0);
+    corners->end = smaller(bottom, end);
+    corners->from = larger(left, clip->x0);
+    corners->to = smaller(right, clip->x1);
     if (corners->first >= corners->end || corners->from >= corners->to) return 0;
     order(corners);
     return 1;
 }
 
-int ew_raster_triangle_in_range(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_vertex *b,
-                                const ew_raster_vertex *c)
+/* Set up in `work`. Returns 1, 0 when there is nothing to draw, or an error. */
+static int set_up(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *c,
+                  int32_t end)
 {
     EW_ASSERT(in_range(a) && in_range(b) && in_range(c));
-    if (!place(raster, a, b, c)) return 0;
+    if (!place(raster, a, b, c, end)) return 0;
     int error = ew_setup(raster);
     if (error) return error;
 #if EW_TRACE
     ew_trace_triangle(a, b, c, raster->work.triangle.rung);
 #endif
+    return 1;
+}
+
+/* Draws the rows of work.triangle above `end`. */
+static int draw_rows(ew_raster *raster, int32_t end)
+{
+    ew_triangle *t = &raster->work.triangle;
+    ew_edge *edge = raster->work.edge;
     const ew_corners *k = &raster->work.corners;
     EW_KEEP_ORDER(k);
+    const int32_t turn = smaller(k->turn, end);
     int reached = 0;
     start_edge(raster, k->longest, k->top, k->bottom, k->first);
-    if (k->first < k->turn) {
+    if (k->first < turn) {
         start_edge(raster, !k->longest, k->top, k->middle, k->first);
-        reached |= ew_walk_rows(raster, k->first, k->turn);
+        reached |= ew_walk_rows(raster, t, edge, k->first, turn);
     }
-    if (k->turn < k->end) {
-        start_edge(raster, !k->longest, k->middle, k->bottom, k->turn);
-        reached |= ew_walk_rows(raster, k->turn, k->end);
+    if (turn < end) {
+        start_edge(raster, !k->longest, k->middle, k->bottom, turn);
+        reached |= ew_walk_rows(raster, t, edge, turn, end);
+    }
+    return reached;
+}
+
+int ew_raster_triangle_in_range(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_vertex *b,
+                                const ew_raster_vertex *c)
+{
+    const int result = set_up(raster, a, b, c, raster->scissor.y1);
+    return result <= 0 ? result : draw_rows(raster, raster->work.corners.end);
+}
+
+/* ---- some rows at a time ---- */
+
+int ew_raster_begin(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *c,
+                    uint16_t end)
+{
+    return set_up(raster, a, b, c, end);
+}
+
+uint16_t ew_raster_begun_end(const ew_raster *raster) { return (uint16_t)raster->work.corners.end; }
+
+int ew_raster_draw_begun(ew_raster *raster)
+{
+    const int32_t first = raster->work.corners.first, end = smaller(raster->work.corners.end, raster->scissor.y1);
+    return first < end ? draw_rows(raster, end) : 0;
+}
+
+/* What is in use of an ew_triangle: quick ones have three planes. */
+enum {
+    NARROW_BYTES = offsetof(ew_triangle, plane) + 3 * sizeof(ew_plane32),
+    WIDE_BYTES = offsetof(ew_triangle, plane) + 3 * sizeof(ew_plane64)
+};
+
+size_t ew_raster_active_bytes(const ew_raster *raster)
+{
+    const ew_triangle *t = &raster->work.triangle;
+    const size_t bytes = !t->is_quick ? sizeof *t : t->is_wide ? WIDE_BYTES : NARROW_BYTES;
+    return (offsetof(ew_active, triangle) + bytes + 7u) / 8u * 8u;
+}
+
+void ew_raster_keep(ew_raster *raster, ew_active *active)
+{
+    const ew_corners *k = &raster->work.corners;
+    const int32_t first = k->first;
+    active->row = (uint16_t)first;
+    active->turn = (uint16_t)k->turn;
+    active->end = (uint16_t)k->end;
+    active->longest = k->longest;
+    active->x[0] = k->x[k->middle], active->y[0] = k->y[k->middle];
+    active->x[1] = k->x[k->bottom], active->y[1] = k->y[k->bottom];
+    start_edge(raster, k->longest, k->top, k->bottom, first);
+    if (first < k->turn) start_edge(raster, !k->longest, k->top, k->middle, first);
+    active->edge[0] = raster->work.edge[0];
+    active->edge[1] = raster->work.edge[1];
+    const ew_triangle *t = &raster->work.triangle;
+    if (!t->is_quick) active->triangle = *t;
+    else if (t->is_wide) EW_COPY(&active->triangle, t, WIDE_BYTES);
+    else EW_COPY(&active->triangle, t, NARROW_BYTES);
+}
+
+/* Rows up to `end` between two changes of edges. Generic fills only know work.triangle. */
+static int active_part(ew_raster *raster, ew_active *active, int32_t end)
+{
+    ew_triangle *t = &active->triangle;
+    if (t->is_quick) return ew_walk_rows(raster, t, active->edge, active->row, end);
+    raster->work.triangle = *t;
+    raster->work.edge[0] = active->edge[0];
+    raster->work.edge[1] = active->edge[1];
+    const int reached = ew_walk_rows(raster, &raster->work.triangle, raster->work.edge, active->row, end);
+    *t = raster->work.triangle;
+    active->edge[0] = raster->work.edge[0];
+    active->edge[1] = raster->work.edge[1];
+    return reached;
+}
+
+int ew_raster_draw_active(ew_raster *raster, ew_active *active)
+{
+    const int32_t end = smaller(active->end, raster->scissor.y1), turn = active->turn;
+    int reached = 0;
+    while (active->row < end) {
+        if (active->row == turn) {
+            ew_edge_start(&active->edge[!active->longest], active->x[0], active->y[0], active->x[1], active->y[1], turn);
+        }
+        const int32_t to = active->row < turn ? smaller(turn, end) : end;
+        reached |= active_part(raster, active, to);
+        active->row = (uint16_t)to;
     }
     return reached;
 }

@@ -27,8 +27,9 @@ enum { PLAIN_NEVER, PLAIN_SOMETIMES, PLAIN_ALWAYS };
  * or EW_ERR_RANGE. */
 int ew_setup(ew_raster *raster);
 
-/* Draws rows from `row` to below `end`, cut to the scissor in x, and steps work.edge and planes.
+/* Draws rows from `row` to below `end` of a triangle whose edges and planes stand on `row`, cut to
+ * the scissor in x, and steps both. Unless it is quick, t and edge are those of raster->work.
  * Returns whether a pixel was reached. */
-int ew_walk_rows(ew_raster *raster, int32_t row, int32_t end);
+int ew_walk_rows(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end);
 
 #endif
