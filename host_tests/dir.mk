@@ -32,8 +32,7 @@ $(T)/test_geometry $(T)/test_accuracy: $(T)/test_%: $(UNIT)/test_%.o $(UNIT)/uni
 	$(LINK_TEST)
 $(T)/test_attributes $(T)/test_clip: $(T)/test_%: $(UNIT)/test_%.o $(UNIT)/unit.o $(TRACE_OBJS)
 	$(LINK_TEST)
-$(T)/test_stream: $(UNIT)/test_stream.o $(UNIT)/unit.o \
-  $(addprefix $(B)/tools/stream/,link.o panel_lines.o sender.o sim.o sim_panel.o) $(LIB)
+$(T)/test_stream: $(UNIT)/test_stream.o $(UNIT)/unit.o $(STREAM_TEST_OBJS) $(LIB)
 	$(LINK_TEST) -pthread
 # The program that README.md shows, cut out of it and compiled as it stands there.
 $(T)/readme_example.c: README.md
@@ -51,7 +50,8 @@ $(T)/test_readme: $(UNIT)/test_readme.o $(T)/readme_example.o $(UNIT)/unit.o $(B
 FILL_PARTS := SHADING FOG BLENDS CUTOUTS BILINEAR MIPS WRAPS TEXTURE_FORMATS TARGET_FORMATS DITHER
 CONFIG_TESTS := $(foreach n,4 5 6 7 9,$(T)/test_recip-$(n)) $(foreach n,4 6,$(T)/test_raster-$(n)) $(T)/test_geometry-pieces \
   $(foreach part,$(FILL_PARTS) EVERYTHING,$(T)/test_fill-without-$(part))
-$(T)/test_recip-%: host_tests/unit/test_recip.c host_tests/unit/unit.c fixed/recip.c fixed/recip_table.inc
+$(CONFIG_TESTS): $(wildcard include/edgewalk/*.h fixed/*.inc src/*/*.h $(addprefix host_tests/,unit/unit.h reference/*.h accuracy/*.h))
+$(T)/test_recip-%: host_tests/unit/test_recip.c host_tests/unit/unit.c fixed/recip.c
 	@mkdir -p $(@D); echo "CC $@"
 	@$(CC) $(HOST_CFLAGS) -DEW_RECIP_BITS=$* -o $@ $(filter %.c,$^) -lcmocka -lm
 $(T)/test_raster-%: host_tests/unit/test_raster.c host_tests/unit/unit.c host_tests/reference/referee.c \
@@ -63,7 +63,7 @@ $(T)/test_geometry-pieces: $(addprefix host_tests/,unit/test_geometry.c unit/uni
 	@mkdir -p $(@D); echo "CC $@"
 	@$(CC) $(HOST_CFLAGS) -DEW_LONG_MULTIPLY=0 -DEW_TRACE=1 -o $@ $(filter %.c,$^) -lcmocka -lm
 $(T)/test_fill-without-%: host_tests/unit/test_fill.c host_tests/unit/unit.c host_tests/reference/ref_fill.c \
-  $(filter fixed/% src/raster/%,$(CORE_SRCS)) $(wildcard src/raster/*.h include/edgewalk/*.h)
+  $(filter fixed/% src/raster/%,$(CORE_SRCS))
 	@mkdir -p $(@D); echo "CC $@"
 	@$(CC) $(HOST_CFLAGS) -Werror -DSHARE=8 -fsanitize=undefined -fno-sanitize-recover=all -o $@ $(filter %.c,$^) -lcmocka -lm \
 	  $(patsubst %,-DEW_WITH_%=0,$(if $(filter EVERYTHING,$*),$(FILL_PARTS),$*))
