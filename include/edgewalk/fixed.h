@@ -253,10 +253,9 @@ void ew_mat34_identity(ew_mat34 *out);
  * below 2^-28 of (largest of a's row) (largest of b), each taken over the three or the
  * fourth that meet in it. */
 int ew_mat34_mul(ew_mat34 *out, const ew_mat34 *a, const ew_mat34 *b);
-/* The same for a 4 x 4 matrix times an affine one, and for two 4 x 4 ones. */
+/* The same for a 4 x 4 matrix times an affine one. */
 int ew_mat44_mul_mat34(ew_mat44 *out, const ew_mat44 *a, const ew_mat34 *b);
-int ew_mat44_mul(ew_mat44 *out, const ew_mat44 *a, const ew_mat44 *b);
-/* One row of these: a row times a matrix. `out` may be a, but no row of b; after EW_ERR_RANGE it
+/* A row times a matrix: one row of such a product. `out` may be a, but no row of b; after EW_ERR_RANGE it
  * is of no use. */
 int ew_row_mul_mat34(ew_row *out, const ew_row *a, const ew_mat34 *b);
 int ew_row_mul_mat44(ew_row *out, const ew_row *a, const ew_mat44 *b);
