@@ -12,7 +12,8 @@ import subprocess
 import tempfile
 import time
 import unittest
-import zlib
+
+from png import png_chunks, png_pixels
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN = pathlib.Path(os.environ.get("EW_BIN", ROOT / "build/release/bin")).resolve()
@@ -49,46 +50,12 @@ def tiny_gltf():
     }
 
 
-def png_chunks(data):
-    assert data[:8] == b"\x89PNG\r\n\x1a\n"
-    at = 8
-    while at < len(data):
-        length, kind = struct.unpack(">I4s", data[at:at + 8])
-        body = data[at + 8:at + 8 + length]
-        assert zlib.crc32(kind + body) == struct.unpack(">I", data[at + 8 + length:at + 12 + length])[0]
-        yield kind, body
-        at += 12 + length
-
-
-def unfilter(kind, row, above, step):
-    for i, byte in enumerate(row):
-        left = row[i - step] if i >= step else 0
-        up = above[i]
-        corner = above[i - step] if i >= step else 0
-        if kind == 4:
-            base = left + up - corner
-            order = sorted((abs(base - v), n) for n, v in enumerate((left, up, corner)))
-            guess = (left, up, corner)[order[0][1]]
-        else:
-            guess = (0, left, up, (left + up) // 2)[kind]
-        row[i] = (byte + guess) & 255
-    return row
-
-
-def png_rgb565(data):
-    """The pixels of an 8-bit RGB PNG file as little-endian RGB565."""
-    chunks = list(png_chunks(data))
-    width, height, depth, colour = struct.unpack(">IIBB", chunks[0][1][:10])
-    assert (width, height, depth, colour) == (WIDTH, HEIGHT, 8, 2)
-    lines = zlib.decompress(b"".join(body for kind, body in chunks if kind == b"IDAT"))
-    above, pixels = bytearray(3 * width), bytearray()
-    for y in range(height):
-        start = y * (1 + 3 * width)
-        above = unfilter(lines[start], bytearray(lines[start + 1:start + 1 + 3 * width]), above, 3)
-        for x in range(width):
-            r, g, b = above[3 * x:3 * x + 3]
-            pixels += struct.pack("<H", r >> 3 << 11 | g >> 2 << 5 | b >> 3)
-    return bytes(pixels)
+def png_rgb565(path):
+    """The pixels of a PNG file as little-endian RGB565."""
+    size, rows = png_pixels(path)
+    assert size == (WIDTH, HEIGHT)
+    pixels = zip(*(b"".join(rows)[k::3] for k in range(3)))
+    return b"".join(struct.pack("<H", r >> 3 << 11 | g >> 2 << 5 | b >> 3) for r, g, b in pixels)
 
 
 def noise(frames, seed=SEED):
@@ -257,7 +224,7 @@ class Simulated(StreamTest):
         names = [f"frame-{i:04}.png" for i in range(5)]
         self.assertEqual(sorted(p.name for p in out.iterdir()), ["animation.png", *names])
         for i, name in enumerate(names):
-            self.assertEqual(png_rgb565((out / name).read_bytes()), frames[i * size:(i + 1) * size])
+            self.assertEqual(png_rgb565(out / name), frames[i * size:(i + 1) * size])
         chunks = list(png_chunks((out / "animation.png").read_bytes()))
         self.assertEqual(struct.unpack(">I", dict(chunks)[b"acTL"][:4])[0], 5)
         self.assertEqual(sum(kind == b"fcTL" for kind, _ in chunks), 5)
