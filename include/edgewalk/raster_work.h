@@ -1,7 +1,7 @@
 /* edgewalk/raster_work.h - the raster layer's own; nothing for users.
  *
  * What the layer works with while it draws a triangle. It lies in the caller's context and
- * not on the stack, which stays below 512 bytes; nothing in it outlives a call.
+ * not on the stack, which stays below 512 bytes; nothing in it outlives a call, but for `loop`.
  */
 #ifndef EW_RASTER_WORK_H
 #define EW_RASTER_WORK_H
@@ -35,13 +35,14 @@ enum {
 /* What is read most lies within short offsets. What follows the planes is for generic fills
  * only: ew_active leaves it out where it can. */
 typedef struct ew_triangle {
-    uint16_t run_scale;         /* of run_length in span.c                       */
+    uint16_t run_scale;         /* of ew_run_length in run.h                     */
     int16_t run_exponent;
     uint16_t run_tolerance;     /* 1/16 px, 0 for runs of fixed length           */
     uint16_t longest, shortest; /* run, px                                       */
+    uint16_t sure_run;          /* spans up to so many pixels are one run: narrow triangles only */
     uint16_t column; /* the pixel column that `row` values belong to: inside the scissor and the
                         triangle's box */
-    uint8_t run_shift;          /* -run_exponent, 0 to 31: of one_run_suffices   */
+    uint8_t run_shift;          /* -run_exponent, 0 to 31: of ew_one_run_suffices */
     uint8_t attributes;         /* how many planes follow that of w: 0, 2, 5     */
     uint8_t is_wide;
     uint8_t is_quick;           /* rows_of_texture (span.c) will do              */
@@ -137,23 +138,24 @@ typedef struct ew_position {
     uint32_t w, dw;
 } ew_position;
 
-/* What the pixel loop of arch.h reads; its machine code knows the order. */
+/* How a run's u and v become one texel number (span.c): what depends on the texture alone, and
+ * what the pixel loop of arch.h reads; its machine code knows the order. */
 typedef struct ew_pixel_loop {
-    uint32_t w, dw, high, low, dhigh, dlow;
     const uint16_t *texels;
-    uint32_t mask, turn;
-    const uint16_t *end, *rest;
+    uint32_t turn, mask;   /* texel numbers are shifted by EW_INDEX_SHIFT (arch.h)         */
+    uint32_t dhigh, dlow;
+    const uint16_t *rest;
+    uint32_t low;          /* bits of v's texel                                            */
+    uint8_t log2_width, log2_height;
+    uint8_t is_256;        /* the texture is 256 x 256                                     */
 } ew_pixel_loop;
 
-/* How a run's u and v become one texel number: span.c. */
-typedef struct ew_packing {
-    ew_pixel_loop loop;
-    uint16_t *colour, *depth; /* where the next pixel goes                                */
-    uint32_t low;             /* bits of v's texel                                        */
-    uint32_t u_base, v_base;
-    uint8_t log2_height, u_shift, v_shift, newton;
-    uint16_t x, y;            /* its position, for tests                                  */
-} ew_packing;
+/* Where the next pixel goes, and 1/z there, uq1.31. */
+typedef struct ew_pen {
+    uint16_t *colour, *depth;
+    uint32_t w, dw;
+    uint16_t x, y; /* for tests                                                            */
+} ew_pen;
 
 /* ---- fills (fill.c, texture.c) ---- */
 
@@ -210,9 +212,9 @@ typedef struct ew_sampler {
 
 /* While spans are drawn. */
 typedef struct ew_span_work {
-    ew_linear linear; /* and the packing: near each other, which short offsets reach       */
+    ew_linear linear; /* and the pen: near each other, which short offsets reach           */
     union {
-        ew_packing packing;
+        ew_pen pen;
         struct {
             ew_attribute_run attributes;
             ew_position position;
@@ -224,6 +226,7 @@ typedef struct ew_span_work {
 } ew_span_work;
 
 typedef struct ew_raster_work {
+    ew_pixel_loop loop; /* set with the material                                           */
     ew_triangle triangle;
     ew_corners corners;
     ew_edge edge[2]; /* left, right                                                       */

@@ -4,6 +4,7 @@
 #include "pixel.h"
 #include "target.h"
 #include "texture.h"
+#include "triangle.h"
 
 /* All rows of the target. */
 static void scissor_rows(ew_raster *raster)
@@ -105,6 +106,7 @@ int ew_raster_set_material(ew_raster *raster, const ew_material *material)
     raster->log2_width = log2_of(raster->texture.width);
     raster->log2_height = log2_of(raster->texture.height);
     raster->plain = (uint8_t)is_plain(raster);
+    if (raster->plain) ew_pixel_loop_init(&raster->work.loop, raster);
     return EW_OK;
 }
 

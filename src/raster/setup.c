@@ -12,9 +12,7 @@
  * Source: K.-L. Low, "Perspective-Correct Interpolation", 2002, equations 12 and 16:
  * 1/z and (attribute)/z are linear on the screen. Plane coefficients: docs/conventions.md.
  */
-#include "triangle.h"
-
-#include "arch.h"
+#include "run.h"
 
 static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
 static uint32_t smaller(uint32_t a, uint32_t b) { return a < b ? a : b; }
@@ -205,7 +203,7 @@ static uint8_t choose_rung(const ew_raster *raster, const ew_raster_vertex *cons
 }
 
 /* A run of N pixels is displaced by at most N^2 |dw| / (4 w) (docs/error-bound.md). The
- * largest N is the root of 4 t w / |dw|; run_length in span.c takes (16 N)^2 as
+ * largest N is the root of 4 t w / |dw|; ew_run_length in run.h takes (16 N)^2 as
  * (w' / 2^15) run_scale 2^run_exponent. |dw| = m 2^-zeros, m normalised; 0 for m = 0. */
 static void run_scale_init(ew_triangle *t, uint32_t m, int zeros, uint32_t tolerance)
 {
@@ -223,6 +221,18 @@ static void run_scale_init(ew_triangle *t, uint32_t m, int zeros, uint32_t toler
     t->run_scale = (uint16_t)(((k << up) >> 16) - 1u); /* less than the table's error: 2^-17 */
     t->run_exponent = (int16_t)(zeros - up - 10);
     if (t->run_exponent < 0) t->run_shift = (uint8_t)smaller((uint32_t)-t->run_exponent, 31);
+}
+
+/* Up to how many pixels no span has to be asked whether it may be one run: w' at its far end
+ * is at least the corners' smallest less a step. */
+static uint16_t sure_run_of(const ew_triangle *t, uint32_t w_min)
+{
+    if (t->is_wide || t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_TABLE || t->rung == EW_RUNG_EXACT) return 0;
+    if (t->rung != EW_RUNG_RUNS) return t->longest; /* 8, 16, 32 */
+    const uint32_t dw = ew_abs32((int32_t)t->plane.narrow[EW_PLANE_W].dx);
+    uint32_t n = dw < w_min ? ew_root16(((w_min - dw) >> 15) * t->run_scale, t->run_exponent) >> 4 : 0;
+    if (4u * n < t->run_tolerance) n = 0;
+    return (uint16_t)smaller(n, t->longest);
 }
 
 static void runs_init(ew_triangle *t, const ew_raster *raster)
@@ -359,7 +369,7 @@ int ew_setup(ew_raster *raster)
         }
     }
     runs_init(t, raster);
-    t->is_quick = t->plain == PLAIN_ALWAYS && t->attributes == 2 &&
-                  (t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_RUNS);
+    t->sure_run = sure_run_of(t, least);
+    t->is_quick = t->plain == PLAIN_ALWAYS && t->attributes == 2;
     return EW_OK;
 }

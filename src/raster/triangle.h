@@ -19,9 +19,12 @@ enum {
 };
 #define EW_FRACTION(bits) (39 - (bits))
 
-/* Whether fill_textured (span.c) may draw a triangle's spans: never, for its material or
+/* Whether fill_pixels (span.c) may draw a triangle's spans: never, for its material or
  * target; where 1/z at the span's ends stays inside depth's range; or everywhere. */
 enum { PLAIN_NEVER, PLAIN_SOMETIMES, PLAIN_ALWAYS };
+
+/* What the loop of span.c needs to know of raster->texture. */
+void ew_pixel_loop_init(ew_pixel_loop *loop, const ew_raster *raster);
 
 /* Rungs, planes and shifts of work.triangle; planes stand on work.corners.first. Returns EW_OK
  * or EW_ERR_RANGE. */
