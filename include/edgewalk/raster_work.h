@@ -66,7 +66,8 @@ typedef struct ew_corners {
     const struct ew_raster_vertex *v[3];
     ew_snapped x[3], y[3];
     int32_t first, end, from, to;    /* rows and columns of its box in the scissor */
-    int32_t steps;                   /* rows and columns of the whole box, added   */
+    int32_t x0, y0;                  /* first column and row of the whole box      */
+    int32_t steps;                   /* all of its rows and columns, added         */
     int32_t turn;                    /* the first row below the middle corner      */
     uint8_t top, middle, bottom;     /* numbers of corners, by y                   */
     uint8_t longest;                 /* the side of the edge from top to bottom: 0 is left */
@@ -106,6 +107,7 @@ typedef struct ew_basis {
 typedef struct ew_weights {
     int32_t x1, x2, y1, y2; /* |.| <= 2^30 */
     int shift;              /* 26 to 38    */
+    int32_t there1, there2; /* their weights at the box's first pixel, 2^26 is 1; |.| <= 2^30 */
 } ew_weights;
 
 /* What planes are made of: values of w' and of all attributes at corners 1 and 2, less those

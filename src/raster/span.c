@@ -178,7 +178,6 @@ EW_NOINLINE int shift_of(ew_linear *by, const ew_triangle *t, const ew_linear *l
 {
     enum { LEAST = 8, MOST = 16 }; /* what lies up to 1 px outside of 8 is within the range of numbers */
     const uint32_t tolerance = t->run_tolerance;
-    by->w = by->u = by->v = 0;
     if (n < LEAST || tolerance == 0 || tolerance > MOST) return 0;
     const uint32_t sign = (int32_t)l->dw < 0 ? UINT32_MAX : 1u;
     const uint32_t fall = in_tolerance(l->dw * sign, tolerance);
@@ -200,12 +199,12 @@ EW_ALWAYS_INLINE void shift(ew_linear *l, const ew_linear *by, uint32_t sign)
 EW_NOINLINE void runs_of_texture(ew_pixel_loop *k, const ew_triangle *t, ew_pen *pen, ew_linear *l, int32_t n)
 {
     enum { AT_ONCE = 16 }; /* pixels of their own before the next look whether a run pays */
-    ew_linear by;
-    ew_run_limit limit;
+    ew_linear by; /* of which only w, u and v count */
+    ew_run_limit limit = { 0 };
+    by.w = by.u = by.v = 0;
     int32_t m = n;
-    const int several = !ew_one_run_suffices(t, l->w, l->dw, l->align, n);
-    ew_run_limit_init(&limit, t, l->dw, l->align, several && shift_of(&by, t, l, n));
-    if (several) {
+    if (!ew_one_run_suffices(t, l->w, l->dw, l->align, n)) {
+        ew_run_limit_init(&limit, t, l->dw, l->align, shift_of(&by, t, l, n));
         shift(l, &by, 1);
         m = ew_run_first(&limit, l->w);
     }

@@ -66,6 +66,7 @@ EW_NOINLINE int place(ew_raster *raster, const ew_raster_vertex *a, const ew_ras
     const int32_t bottom = ew_row_at(larger(sy[0], larger(sy[1], sy[2])));
     const int32_t left = ew_row_at(smaller(sx[0], smaller(sx[1], sx[2])));
     const int32_t right = ew_row_at(larger(sx[0], larger(sx[1], sx[2])));
+    corners->x0 = left, corners->y0 = top;
     corners->steps = bottom - top + right - left;
     corners->first = larger(top, clip->y0);
     corners->end = smaller(bottom, end);
