@@ -39,7 +39,7 @@ typedef struct ew_triangle {
     int16_t run_exponent;
     uint16_t run_tolerance;     /* 1/16 px, 0 for runs of fixed length           */
     uint16_t longest, shortest; /* run, px                                       */
-    uint16_t sure_run;          /* spans up to so many pixels are one run: narrow triangles only */
+    uint16_t sure_run;          /* spans up to so many pixels are filled in one go */
     uint16_t column; /* the pixel column that `row` values belong to: inside the scissor and the
                         triangle's box */
     uint8_t run_shift;          /* -run_exponent, 0 to 31: of ew_one_run_suffices */
@@ -127,6 +127,19 @@ typedef struct ew_linear {
     uint32_t shade[3], dshade[3];
 } ew_linear;
 
+/* What w', u and v of a span change by, to be drawn moved. */
+typedef struct ew_move {
+    uint32_t w, u, v;
+} ew_move;
+
+/* How long the runs of a piece may be: src/raster/run.h. */
+typedef struct ew_run_limit {
+    uint32_t scale;
+    uint32_t fall;    /* tolerance, 1/16 px, where w falls                                */
+    int32_t longest, shortest; /* shortest: 4 t                                           */
+    int down;
+} ew_run_limit;
+
 /* Attributes of a run's first pixel, with their fraction bits, and what they grow by. */
 typedef struct ew_attribute_run {
     uint32_t u, du, v, dv;
@@ -146,7 +159,7 @@ typedef struct ew_pixel_loop {
     const uint16_t *texels;
     uint32_t turn, mask;   /* texel numbers are shifted by EW_INDEX_SHIFT (arch.h)         */
     uint32_t dhigh, dlow;
-    const uint16_t *rest;
+    const uint16_t *rest, *end;
     uint32_t low;          /* bits of v's texel                                            */
     uint8_t log2_width, log2_height;
     uint8_t is_256;        /* the texture is 256 x 256                                     */
@@ -215,6 +228,9 @@ typedef struct ew_sampler {
 /* While spans are drawn. */
 typedef struct ew_span_work {
     ew_linear linear; /* and the pen: near each other, which short offsets reach           */
+    ew_move by;
+    ew_run_limit limit;
+    int32_t left; /* pixels of the piece                                                  */
     union {
         ew_pen pen;
         struct {

@@ -115,15 +115,16 @@ EW_ALWAYS_INLINE uint32_t ew_fill_pixels(ew_pixel_loop *k, uint16_t *c, uint16_t
                                          uint32_t high, uint32_t low, uint32_t dhigh, uint32_t dlow)
 {
     uint32_t t, d;
-    const uint16_t *end = z + (n & ~(int32_t)3);
     k->dhigh = dhigh, k->dlow = dlow;
+    k->end = z + (n & ~(int32_t)3);
     k->rest = z + n;
     __asm__ volatile(".syntax unified\n\t"
                      "b 2f\n"
                      "1:\t" EW_PIXEL("0") EW_PIXEL("2") EW_PIXEL("4") EW_PIXEL("6")
                      "adds %[z], %[z], #8\n\t"
                      "adds %[c], %[c], #8\n"
-                     "2:\tcmp %[z], %[end]\n\t"
+                     "2:\tldr %[t], [%[k], #24]\n\t"
+                     "cmp %[z], %[t]\n\t"
                      "bne 1b\n\t"
                      "b 4f\n"
                      "3:\t" EW_PIXEL("0")
@@ -133,7 +134,7 @@ EW_ALWAYS_INLINE uint32_t ew_fill_pixels(ew_pixel_loop *k, uint16_t *c, uint16_t
                      "cmp %[z], %[t]\n\t"
                      "bne 3b\n\t"
                      : [z] "+l"(z), [c] "+l"(c), [w] "+l"(w), [high] "+l"(high), [low] "+l"(low), [t] "=&l"(t), [d] "=&l"(d)
-                     : [k] "l"(k), [dw] "h"(dw), [end] "h"(end)
+                     : [k] "l"(k), [dw] "h"(dw)
                      : "cc", "memory");
     return w;
 }

@@ -47,18 +47,11 @@ EW_ALWAYS_INLINE int ew_one_run_suffices(const ew_triangle *t, uint32_t w, uint3
 
 /* ---- run after run ---- */
 
-/* What stays the same along a piece of a span: 1/z is linear there, so a run's length is
- * found from that of the one before it. */
-typedef struct ew_run_limit {
-    uint32_t scale;
-    uint32_t fall;    /* tolerance, 1/16 px, where w falls                                */
-    int32_t longest, shortest; /* shortest: 4 t                                           */
-    int down;
-} ew_run_limit;
-
+/* 1/z is linear along a piece of a span: a run's length is found from that of the one before
+ * it, with what stays the same. */
 EW_ALWAYS_INLINE void ew_run_limit_init(ew_run_limit *limit, const ew_triangle *t, uint32_t dw, int align, int twice)
 {
-    const int tolerance = t->run_tolerance << twice, down = align - twice - t->run_exponent;
+    const int tolerance = (int)t->run_tolerance << twice, down = align - twice - t->run_exponent;
     limit->scale = t->run_scale;
     limit->fall = (int32_t)dw < 0 ? (uint32_t)tolerance : 0;
     limit->longest = t->longest;

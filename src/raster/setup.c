@@ -240,15 +240,29 @@ static void run_scale_init(ew_triangle *t, uint32_t m, int zeros, uint32_t toler
     if (t->run_exponent < 0) t->run_shift = (uint8_t)smaller((uint32_t)-t->run_exponent, 31);
 }
 
-/* Up to how many pixels no span has to be asked whether it may be one run: w' at its far end
- * is at least the corners' smallest less a step. */
-static uint16_t sure_run_of(const ew_triangle *t, uint32_t w_min)
+/* How many pixels of a wide triangle steps of 32 bits will do for, from where w' is smallest:
+ * steps_suffice in span.c. */
+static uint32_t sure_steps(const ew_triangle *t, uint32_t w_min)
 {
-    if (t->is_wide) return 0;
-    if (t->rung != EW_RUNG_RUNS) return t->longest;
-    const uint32_t dw = ew_abs32((int32_t)t->plane.narrow[EW_PLANE_W].dx);
-    uint32_t n = dw < w_min ? ew_root16(((w_min - dw) >> 15) * t->run_scale, t->run_exponent) >> 4 : 0;
-    return 4u * n < t->run_tolerance ? 0 : (uint16_t)smaller(n, t->longest);
+    const uint32_t n = t->rung == EW_RUNG_AFFINE ? UINT32_C(1) << (32 - t->uv_bits) :
+                                                   w_min >> (t->uv_bits - 1); /* n 2^bits <= 2 w' */
+    return smaller(n, EW_LONGEST_RUN);
+}
+
+/* Up to how many pixels no span has to be asked whether it may be filled in one go. Outside
+ * of the fine triangle w' is at least 3/4 of the corners' smallest, and a run's far end may be
+ * one step beyond its own. dw is the step's size, a fraction of 2^64. */
+static uint16_t sure_run_of(const ew_triangle *t, uint64_t dw, uint32_t w_min)
+{
+    uint32_t most = t->is_wide ? sure_steps(t, w_min - w_min / 4) : EW_LONGEST_RUN;
+    if (t->rung == EW_RUNG_AFFINE) return (uint16_t)most;
+    if (t->rung == EW_RUNG_RUNS) {
+        const uint32_t step = (uint32_t)(dw >> 32) + 1u;
+        const uint32_t far_end = w_min - w_min / 4 > step ? w_min - w_min / 4 - step : 0;
+        const uint32_t n = ew_root16((far_end >> 15) * t->run_scale, t->run_exponent) >> 4;
+        most = 4u * n < t->run_tolerance ? 0 : smaller(n, most);
+    }
+    return (uint16_t)smaller(most, t->longest);
 }
 
 static uint16_t longest_of(const ew_triangle *t, const ew_raster *raster)
@@ -272,6 +286,7 @@ static void runs_init(ew_triangle *t, const ew_raster *raster, uint32_t w_min)
         if (dw != 0 || !automatic) return;
         t->rung = EW_RUNG_RUNS;
     }
+    if (t->rung == EW_RUNG_AFFINE) t->sure_run = sure_run_of(t, dw, w_min);
     if (t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_CONSTANT) return;
     t->longest = longest_of(t, raster);
     /* an explicit rung is taken at its word, but for runs of one pixel */
@@ -279,7 +294,7 @@ static void runs_init(ew_triangle *t, const ew_raster *raster, uint32_t w_min)
     if (t->rung == EW_RUNG_RUNS) t->run_tolerance = raster->material.tolerance;
     const int zeros = ew_clz64(dw);
     run_scale_init(t, dw ? (uint32_t)((dw << zeros) >> 32) : 0, zeros, raster->material.tolerance);
-    t->sure_run = sure_run_of(t, w_min);
+    t->sure_run = sure_run_of(t, dw, w_min);
 }
 
 /* ---- attributes ---- */

@@ -120,15 +120,15 @@ EW_ALWAYS_INLINE void fill_pixels(ew_pixel_loop *k, const ew_triangle *t, ew_pen
 #endif
 }
 
-/* A run of n pixels with w', u and v at its first, that is exact at its pixel n / 2. */
-EW_ALWAYS_INLINE void fill_tangent(ew_pixel_loop *k, const ew_triangle *t, ew_pen *pen, uint32_t w, uint32_t dw,
-                                   uint32_t u, uint32_t du, uint32_t v, uint32_t dv, int32_t n)
+/* u and v times w', and their steps, become the tangent at pixel n / 2 of a run of n, at its first. */
+EW_ALWAYS_INLINE void tangent(const ew_triangle *t, uint32_t w, uint32_t dw, uint32_t *u, uint32_t *du, uint32_t *v,
+                              uint32_t *dv, int32_t n)
 {
     const uint32_t half = (uint32_t)n >> 1;
-    divisor d = divisor_of(w + dw * half, t->newton);
-    u = over_w(u + du * half, d), v = over_w(v + dv * half, d);
-    du = slope(u, du, dw, d), dv = slope(v, dv, dw, d);
-    fill_pixels(k, t, pen, u - du * half, du, v - dv * half, dv, n);
+    const divisor d = divisor_of(w + dw * half, t->newton);
+    *u = over_w(*u + *du * half, d), *v = over_w(*v + *dv * half, d);
+    *du = slope(*u, *du, dw, d), *dv = slope(*v, *dv, dw, d);
+    *u -= *du * half, *v -= *dv * half;
 }
 
 EW_ALWAYS_INLINE void advance(ew_linear *l, uint32_t n)
@@ -136,33 +136,6 @@ EW_ALWAYS_INLINE void advance(ew_linear *l, uint32_t n)
     l->w += l->dw * n;
     l->u += l->du * n;
     l->v += l->dv * n;
-}
-
-/* Each pixel with a reciprocal of its own. */
-EW_NOINLINE void textured_pixels(ew_pixel_loop *k, const ew_triangle *t, ew_pen *pen, ew_linear *l, int32_t n)
-{
-#if EW_TRACE
-    for (; n > 0; n--, advance(l, 1)) {
-        divisor d = divisor_of(l->w, t->newton);
-        fill_pixels(k, t, pen, over_w(l->u, d), 0, over_w(l->v, d), 0, 1);
-    }
-#else
-    const uint16_t *texels = k->texels;
-    const int log2_width = k->log2_width, u_down = 32 - log2_width, v_down = 32 - k->log2_height;
-    uint16_t *c = pen->colour, *z = pen->depth;
-    uint32_t w = l->w, u = l->u, v = l->v;
-    pen->colour = c + n, pen->depth = z + n;
-    for (; n > 0; n--, c++, z++, pen->w += pen->dw, w += l->dw, u += l->du, v += l->dv) {
-        uint32_t depth = pen->w >> 15;
-        if (depth <= *z) continue;
-        divisor d = divisor_of(w, t->newton);
-        uint32_t column = ((over_w(u, d) << t->u_shift) + t->u_base) >> u_down;
-        uint32_t row = ((over_w(v, d) << t->v_shift) + t->v_base) >> v_down;
-        *z = (uint16_t)depth;
-        *c = texels[(row << log2_width) + column];
-    }
-    l->w = w, l->u = u, l->v = v;
-#endif
 }
 
 /* d t, for t in 1/16 px. */
@@ -173,11 +146,12 @@ static uint32_t in_tolerance(uint32_t d, uint32_t tolerance)
 
 /* A tangent is off to one side only. Moved by the tolerance to the other side, it may be
  * sqrt 2 as long (docs/error-bound.md). Returns whether that can be done for a piece of n
- * pixels. `by` receives what w', u and v change by. */
-EW_NOINLINE int shift_of(ew_linear *by, const ew_triangle *t, const ew_linear *l, int32_t n)
+ * pixels. */
+EW_NOINLINE int move_init(ew_move *by, const ew_triangle *t, const ew_linear *l, int32_t n)
 {
     enum { LEAST = 8, MOST = 16 }; /* what lies up to 1 px outside of 8 is within the range of numbers */
     const uint32_t tolerance = t->run_tolerance;
+    by->w = by->u = by->v = 0;
     if (n < LEAST || tolerance == 0 || tolerance > MOST) return 0;
     const uint32_t sign = (int32_t)l->dw < 0 ? UINT32_MAX : 1u;
     const uint32_t fall = in_tolerance(l->dw * sign, tolerance);
@@ -188,48 +162,99 @@ EW_NOINLINE int shift_of(ew_linear *by, const ew_triangle *t, const ew_linear *l
     return 1;
 }
 
-EW_ALWAYS_INLINE void shift(ew_linear *l, const ew_linear *by, uint32_t sign)
+EW_ALWAYS_INLINE void move(ew_linear *l, const ew_move *by, uint32_t sign)
 {
     l->w += by->w * sign;
     l->u += by->u * sign;
     l->v += by->v * sign;
 }
 
-/* A piece of a span, of at most EW_LONGEST_RUN pixels. */
-EW_NOINLINE void runs_of_texture(ew_pixel_loop *k, const ew_triangle *t, ew_pen *pen, ew_linear *l, int32_t n)
+/* Whether a piece is drawn pixel by pixel whatever its runs would be. */
+static int is_per_pixel(const ew_triangle *t) { return t->rung == EW_RUNG_TABLE || t->rung == EW_RUNG_EXACT; }
+static int is_affine(const ew_triangle *t) { return t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_CONSTANT; }
+
+/* The first run of a piece of n pixels; span->linear is moved if that is to be. */
+EW_NOINLINE int32_t first_run(ew_span_work *span, const ew_triangle *t, int32_t n)
 {
-    enum { AT_ONCE = 16 }; /* pixels of their own before the next look whether a run pays */
-    ew_linear by; /* of which only w, u and v count */
-    ew_run_limit limit = { 0 };
-    by.w = by.u = by.v = 0;
-    int32_t m = n;
-    if (!ew_one_run_suffices(t, l->w, l->dw, l->align, n)) {
-        ew_run_limit_init(&limit, t, l->dw, l->align, shift_of(&by, t, l, n));
-        shift(l, &by, 1);
-        m = ew_run_first(&limit, l->w);
-    }
+    ew_linear *l = &span->linear;
+    span->left = n;
+    span->by.w = span->by.u = span->by.v = 0;
+    if (is_per_pixel(t)) return 0;
+    if (is_affine(t) || ew_one_run_suffices(t, l->w, l->dw, l->align, n)) return n;
+    ew_run_limit_init(&span->limit, t, l->dw, l->align, move_init(&span->by, t, l, n));
+    move(l, &span->by, 1);
+    return ew_run_first(&span->limit, l->w);
+}
+
+/* Whether a run of m pixels does not pay. */
+static int is_short(const ew_triangle *t, const ew_span_work *span, int32_t m)
+{
+    return m < span->left && (m < t->shortest || is_per_pixel(t));
+}
+
+/* A run of m pixels, then more as long as they pay. Returns the length of the run that would
+ * come next. */
+EW_NOINLINE int32_t runs_of_texture(ew_pixel_loop *k, const ew_triangle *t, ew_span_work *span, int32_t m)
+{
+    ew_linear *l = &span->linear;
     for (;;) {
-        if (m < t->shortest && n > 1) {
-            m = smaller(n, AT_ONCE);
-            shift(l, &by, UINT32_MAX); /* each exact */
-            textured_pixels(k, t, pen, l, m);
-            shift(l, &by, 1);
-        } else {
-            if (m > n || n == 1) m = n;
-            fill_tangent(k, t, pen, l->w, l->dw, l->u, l->du, l->v, l->dv, m);
-            advance(l, (uint32_t)m);
-        }
-        n -= m;
-        if (n == 0) return;
-        m = ew_run_next(&limit, l->w, m);
+        uint32_t u = l->u, du = l->du, v = l->v, dv = l->dv;
+        m = smaller(m, span->left);
+        if (!is_affine(t)) tangent(t, l->w, l->dw, &u, &du, &v, &dv, m);
+        fill_pixels(k, t, &span->fill.pen, u, du, v, dv, m);
+        span->left -= m;
+        if (span->left == 0) return 0;
+        advance(l, (uint32_t)m);
+        m = ew_run_next(&span->limit, l->w, m);
+        if (is_short(t, span, m)) return m;
     }
 }
 
-EW_NOINLINE void piece_of_texture(ew_pixel_loop *k, const ew_triangle *t, ew_pen *pen, ew_linear *l, int32_t n)
+/* Each pixel with a reciprocal of its own: all that are left of the piece, or as many as there may
+ * be before the next look whether a run pays. Returns as runs_of_texture. */
+EW_NOINLINE int32_t pixels_of_texture(ew_pixel_loop *k, const ew_triangle *t, ew_span_work *span)
 {
-    if (t->rung == EW_RUNG_TABLE || t->rung == EW_RUNG_EXACT) textured_pixels(k, t, pen, l, n);
-    else if (t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_CONSTANT) fill_pixels(k, t, pen, l->u, l->du, l->v, l->dv, n);
-    else runs_of_texture(k, t, pen, l, n);
+    enum { AT_ONCE = 16 };
+    ew_linear *l = &span->linear;
+    ew_pen *pen = &span->fill.pen;
+    const int32_t n = is_per_pixel(t) ? span->left : smaller(span->left, AT_ONCE);
+    span->left -= n;
+    move(l, &span->by, UINT32_MAX); /* they are exact where they are */
+#if EW_TRACE
+    for (int32_t i = 0; i < n; i++, advance(l, 1)) {
+        divisor d = divisor_of(l->w, t->newton);
+        fill_pixels(k, t, pen, over_w(l->u, d), 0, over_w(l->v, d), 0, 1);
+    }
+#else
+    const uint16_t *texels = k->texels;
+    const int log2_width = k->log2_width, u_down = 32 - log2_width, v_down = 32 - k->log2_height;
+    uint32_t w = l->w, u = l->u, v = l->v;
+    for (int32_t i = 0; i < n; i++, w += l->dw, u += l->du, v += l->dv) {
+        uint32_t depth = pen->w >> 15;
+        pen->w += pen->dw;
+        if (depth <= pen->depth[i]) continue;
+        divisor d = divisor_of(w, t->newton);
+        uint32_t column = ((over_w(u, d) << t->u_shift) + t->u_base) >> u_down;
+        uint32_t row = ((over_w(v, d) << t->v_shift) + t->v_base) >> v_down;
+        pen->depth[i] = (uint16_t)depth;
+        pen->colour[i] = texels[(row << log2_width) + column];
+    }
+    pen->depth += n, pen->colour += n;
+    l->w = w, l->u = u, l->v = v;
+#endif
+    move(l, &span->by, 1);
+    return span->left ? ew_run_next(&span->limit, l->w, n) : 0;
+}
+
+/* A piece of a span, of at most EW_LONGEST_RUN pixels. */
+EW_NOINLINE void piece_of_texture(ew_raster *raster, const ew_triangle *t, int32_t n)
+{
+    ew_pixel_loop *k = &raster->work.loop;
+    ew_span_work *span = &raster->work.now.span;
+    int32_t m = first_run(span, t, n);
+    do {
+        m = is_short(t, span, m) ? pixels_of_texture(k, t, span) : runs_of_texture(k, t, span, m);
+    } while (span->left > 0);
 }
 
 /* ---- everything else ---- */
@@ -386,21 +411,12 @@ EW_NOINLINE int start_piece(ew_raster *raster, int32_t x, int32_t y, int32_t n)
     return 0;
 }
 
-/* w', u and v at x on the current row. */
-EW_ALWAYS_INLINE void narrow_start(ew_linear *l, const ew_triangle *t, int32_t x)
-{
-    const ew_plane32 *p = t->plane.narrow;
-    uint32_t columns = (uint32_t)(x - t->column);
-    l->w = p[EW_PLANE_W].row + l->dw * columns;
-    l->u = p[EW_PLANE_U].row + l->du * columns;
-    l->v = p[EW_PLANE_V].row + l->dv * columns;
-}
-
 /* work.linear from x on. */
 EW_NOINLINE void start_narrow(ew_raster *raster, int32_t x)
 {
     const ew_triangle *t = &raster->work.triangle;
     const ew_plane32 *p = &t->plane.narrow[EW_PLANE_SHADE];
+    const uint32_t columns = (uint32_t)(x - t->column);
     ew_linear *l = &raster->work.now.span.linear;
     EW_KEEP_ORDER(t);
     EW_KEEP_ORDER(l);
@@ -408,10 +424,12 @@ EW_NOINLINE void start_narrow(ew_raster *raster, int32_t x)
     l->dw = t->plane.narrow[EW_PLANE_W].dx;
     l->du = t->plane.narrow[EW_PLANE_U].dx;
     l->dv = t->plane.narrow[EW_PLANE_V].dx;
-    narrow_start(l, t, x);
+    l->w = t->plane.narrow[EW_PLANE_W].row + l->dw * columns;
+    l->u = t->plane.narrow[EW_PLANE_U].row + l->du * columns;
+    l->v = t->plane.narrow[EW_PLANE_V].row + l->dv * columns;
     if (t->attributes == 0) l->u = l->du = l->v = l->dv = 0;
     for (int i = 0; i < t->attributes - 2; i++) {
-        l->shade[i] = p[i].row + p[i].dx * (uint32_t)(x - t->column);
+        l->shade[i] = p[i].row + p[i].dx * columns;
         l->dshade[i] = p[i].dx;
     }
 }
@@ -505,8 +523,8 @@ EW_ALWAYS_INLINE void planes_step(ew_triangle *t, int wide, int attributes)
     for (int i = EW_PLANE_SHADE; i <= attributes; i++) p[i].row += p[i].dy;
 }
 
-/* A span of a wide triangle, from where the pen is; then its planes go to the next row. */
-EW_NOINLINE void row_of_wide(ew_raster *raster, ew_triangle *t, int32_t x, int32_t y, int32_t n)
+/* A span that has to be cut, or whose runs have to be found. */
+EW_NOINLINE void span_of_texture(ew_raster *raster, const ew_triangle *t, int32_t x, int32_t y, int32_t n)
 {
     ew_linear *l = &raster->work.now.span.linear;
     ew_pen *pen = &raster->work.now.span.fill.pen;
@@ -514,53 +532,57 @@ EW_NOINLINE void row_of_wide(ew_raster *raster, ew_triangle *t, int32_t x, int32
     pen_at(pen, raster, x, y);
     while (n > 0) {
         int32_t m = n;
-        wide_start(l, t, x);
-        if (!steps_suffice(t, l->w, l->w + l->dw * (uint32_t)(n - 1), n)) m = next_of_wide(raster, t, x, n);
+        if (t->is_wide && !steps_suffice(t, l->w, l->w + l->dw * (uint32_t)(n - 1), n)) m = next_of_wide(raster, t, x, n);
         const int down = (int)smaller(t->w_lead + l->align, 31);
         pen->w = depth_of(l->w, down), pen->dw = depth_step(l->dw, down);
-        piece_of_texture(&raster->work.loop, t, pen, l, m);
+        piece_of_texture(raster, t, m);
         x += m;
         n -= m;
+        if (n > 0) wide_start(l, t, x);
     }
-    planes_step(t, 1, 2);
 }
 
 /* Triangles with a texture, depth and nothing else: ew_walk_rows for the common case. */
 EW_NOINLINE int rows_of_texture(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
 {
     ew_plane32 *p = t->plane.narrow;
+    ew_linear *l = &raster->work.now.span.linear;
     int reached = 0;
+    EW_KEEP_ORDER(l);
     for (; row < end; row++) {
         const int32_t x = larger(edge[0].x, raster->scissor.x0), n = smaller(edge[1].x, raster->scissor.x1) - x;
-        if (t->is_wide) {
-            row_of_wide(raster, t, x, row, n);
-        } else {
-            uint32_t w = p[EW_PLANE_W].row, u = p[EW_PLANE_U].row, v = p[EW_PLANE_V].row;
-            p[EW_PLANE_W].row = w + p[EW_PLANE_W].dy;
-            p[EW_PLANE_U].row = u + p[EW_PLANE_U].dy;
-            p[EW_PLANE_V].row = v + p[EW_PLANE_V].dy;
-            if (n > 0) {
-                const uint32_t dw = p[EW_PLANE_W].dx, du = p[EW_PLANE_U].dx, dv = p[EW_PLANE_V].dx;
+        if (n > 0) {
+            uint32_t w, dw, u, du, v, dv;
+            if (t->is_wide) {
+                wide_start(l, t, x);
+                w = l->w, dw = l->dw, u = l->u, du = l->du, v = l->v, dv = l->dv;
+            } else {
                 const uint32_t columns = (uint32_t)(x - t->column);
-                w += dw * columns, u += du * columns, v += dv * columns;
-                const uint32_t z0 = depth_of(w, t->w_lead), dz = depth_step(dw, t->w_lead);
-                if (n <= t->sure_run) {
-                    ew_pen pen = { .w = z0, .dw = dz };
-                    pen_at(&pen, raster, x, row);
-                    fill_tangent(&raster->work.loop, t, &pen, w, dw, u, du, v, dv, n);
-                } else {
-                    ew_linear *l = &raster->work.now.span.linear;
-                    ew_pen *pen = &raster->work.now.span.fill.pen;
-                    l->w = w, l->u = u, l->v = v;
-                    l->dw = dw, l->du = du, l->dv = dv;
-                    l->align = 0;
-                    pen->w = z0, pen->dw = dz;
-                    pen_at(pen, raster, x, row);
-                    piece_of_texture(&raster->work.loop, t, pen, l, n);
-                }
+                dw = p[EW_PLANE_W].dx, du = p[EW_PLANE_U].dx, dv = p[EW_PLANE_V].dx;
+                w = p[EW_PLANE_W].row + dw * columns;
+                u = p[EW_PLANE_U].row + du * columns;
+                v = p[EW_PLANE_V].row + dv * columns;
             }
+            if (n <= t->sure_run) {
+                ew_pen pen; /* in registers */
+                pen_at(&pen, raster, x, row);
+                pen.w = depth_of(w, t->w_lead), pen.dw = depth_step(dw, t->w_lead);
+                if (t->rung != EW_RUNG_AFFINE) tangent(t, w, dw, &u, &du, &v, &dv, n);
+                fill_pixels(&raster->work.loop, t, &pen, u, du, v, dv, n);
+            } else {
+                l->w = w, l->dw = dw, l->u = u, l->du = du, l->v = v, l->dv = dv;
+                l->align = 0;
+                span_of_texture(raster, t, x, row, n);
+            }
+            reached = 1;
         }
-        if (n > 0) reached = 1;
+        if (t->is_wide) {
+            planes_step(t, 1, 2);
+        } else {
+            p[EW_PLANE_W].row += p[EW_PLANE_W].dy;
+            p[EW_PLANE_U].row += p[EW_PLANE_U].dy;
+            p[EW_PLANE_V].row += p[EW_PLANE_V].dy;
+        }
         ew_edge_step(&edge[0]);
         ew_edge_step(&edge[1]);
     }
@@ -575,8 +597,7 @@ static void span_of_any(ew_raster *raster, int32_t x, int32_t y, int32_t n)
         if (t->is_wide) m = next_of_wide(raster, t, x, n);
         else start_narrow(raster, x);
         if (start_piece(raster, x, y, m)) {
-            ew_span_work *span = &raster->work.now.span;
-            piece_of_texture(&raster->work.loop, t, &span->fill.pen, &span->linear, m);
+            piece_of_texture(raster, t, m);
         } else {
             piece_of_any(raster, m);
         }
