@@ -140,9 +140,8 @@ enum {
     WIDE_BYTES = offsetof(ew_triangle, plane) + 3 * sizeof(ew_plane64)
 };
 
-size_t ew_raster_active_bytes(const ew_raster *raster)
+size_t ew_active_bytes(const ew_triangle *t)
 {
-    const ew_triangle *t = &raster->work.triangle;
     const size_t bytes = !t->is_quick ? sizeof *t : t->is_wide ? WIDE_BYTES : NARROW_BYTES;
     return (offsetof(ew_active, triangle) + bytes + 7u) / 8u * 8u;
 }

@@ -1,0 +1,276 @@
+/* Triangles that reach over more bands than one: kept where there is room, else set up again. */
+#include "picture.h"
+
+/* ---- places ---- */
+
+enum { PLACE_BYTES = 8 };
+
+static ew_kept *kept_at(const ew_picture_work *w, ew_place place)
+{
+    return (ew_kept *)(void *)(w->places + (size_t)place * PLACE_BYTES);
+}
+
+void ew_places_init(ew_picture_work *w, size_t bytes)
+{
+    const size_t places = bytes / PLACE_BYTES < EW_NO_PLACE ? bytes / PLACE_BYTES : EW_NO_PLACE - 1u;
+    w->kept = w->gaps = EW_NO_PLACE;
+    if (places == 0) return;
+    w->gaps = 0;
+    kept_at(w, 0)->gap.places = (uint16_t)places;
+    kept_at(w, 0)->gap.next = EW_NO_PLACE;
+}
+
+/* The first gap that is large enough gives its end. */
+static ew_place take_places(ew_picture_work *w, uint16_t places)
+{
+    for (ew_place *at = &w->gaps; *at != EW_NO_PLACE; at = &kept_at(w, *at)->gap.next) {
+        ew_kept *gap = kept_at(w, *at);
+        if (gap->gap.places < places) continue;
+        const ew_place taken = (ew_place)(*at + gap->gap.places - places);
+        gap->gap.places = (uint16_t)(gap->gap.places - places);
+        if (gap->gap.places == 0) *at = gap->gap.next;
+        return taken;
+    }
+    return EW_NO_PLACE;
+}
+
+/* Gaps stand in order, and no two touch. */
+static void give_places(ew_picture_work *w, ew_place place, uint16_t places)
+{
+    ew_kept *before = NULL, *gap = kept_at(w, place);
+    ew_place *at = &w->gaps;
+    ew_place before_place = 0;
+    while (*at != EW_NO_PLACE && *at < place) {
+        before_place = *at;
+        before = kept_at(w, *at);
+        at = &before->gap.next;
+    }
+    gap->gap.places = places;
+    gap->gap.next = *at;
+    *at = place;
+    if (gap->gap.next == place + places) {
+        const ew_kept *after = kept_at(w, gap->gap.next);
+        gap->gap.places = (uint16_t)(places + after->gap.places);
+        gap->gap.next = after->gap.next;
+    }
+    if (before && before_place + before->gap.places == place) {
+        before->gap.places = (uint16_t)(before->gap.places + gap->gap.places);
+        before->gap.next = gap->gap.next;
+    }
+}
+
+static uint16_t places_of(const ew_triangle *t) { return (uint16_t)(ew_active_bytes(t) / PLACE_BYTES); }
+
+/* Takes the kept triangle out that *link leads to. */
+static void drop(ew_picture_work *w, ew_place *link)
+{
+    const ew_place place = *link;
+    const ew_active *active = &kept_at(w, place)->active;
+    const uint16_t places = places_of(&active->triangle);
+    *link = active->next;
+    give_places(w, place, places);
+    w->active--;
+}
+
+/* Keeps the triangle that was begun, before the one that *link leads to. Returns where it leads on,
+ * or NULL where there is no room. */
+static ew_place *keep(ew_picture_work *w, uint32_t number, ew_place *link)
+{
+    const ew_place place = take_places(w, places_of(&w->geometry->raster->work.triangle));
+    if (place == EW_NO_PLACE) return NULL;
+    ew_active *active = &kept_at(w, place)->active;
+    ew_raster_keep(w->geometry->raster, active);
+    active->number = number;
+    active->next = *link;
+    *link = place;
+    w->active++;
+    return &active->next;
+}
+
+/* ---- vertices ---- */
+
+static void take_slot(ew_picture_work *w, uint32_t number, const ew_screen_vertex *v)
+{
+    enum { TRIES = 16 };
+    const uint32_t tries = w->slot_count < TRIES ? w->slot_count : TRIES;
+    for (uint32_t i = 0; i < tries; i++) {
+        if (++w->hand >= w->slot_count) w->hand = 0;
+        ew_slot *slot = &w->slots[w->hand];
+        /* no triangle begins below its own vertices */
+        if (ew_row_of(slot->y) >= w->top) continue;
+        slot->w = v->w, slot->x = v->x;
+        /* those of vertices without a place begin in the first band there is */
+        slot->y = v->outcode & (EW_OUT_NEAR | EW_OUT_GUARD) ? w->top * 4096 : v->y;
+        slot->tag = number << 8 | v->outcode;
+        w->map[number] = (uint16_t)w->hand;
+        return;
+    }
+}
+
+/* A vertex of the object at hand. */
+static EW_OWN_FRAME void fetch(ew_picture_work *w, const ew_object *object, uint16_t vertex, ew_screen_vertex *out)
+{
+    if (object->mesh.screen) {
+        *out = object->mesh.screen[vertex];
+        return;
+    }
+    const uint32_t number = w->first_vertex + vertex;
+    const uint16_t at = w->map[number];
+    if (at < w->slot_count && w->slots[at].tag >> 8 == number) {
+        const ew_slot *slot = &w->slots[at];
+        out->w = slot->w, out->x = slot->x, out->y = slot->y;
+        out->outcode = (uint8_t)slot->tag;
+        return;
+    }
+    ew_transform_vertices(&object->transform, &object->mesh.vertices[vertex], 1, out);
+    w->counts.transformed++;
+    take_slot(w, number, out);
+}
+
+/* ---- triangles ---- */
+
+/* Makes the triangle's object the one at hand: numbers grow within a band. Returns it, or NULL and
+ * an error of the raster's. */
+static const ew_object *object_of(ew_picture_work *w, uint32_t number, int *error)
+{
+    const ew_object *object = &w->objects[w->object];
+    while (number - w->first_triangle >= object->mesh.index_count / 3u) {
+        w->first_triangle += object->mesh.index_count / 3u;
+        if (!object->mesh.screen) w->first_vertex += object->vertex_count;
+        object = &w->objects[++w->object];
+    }
+    *error = EW_OK;
+    if (w->used != w->object) {
+        *error = ew_raster_set_material(w->geometry->raster, &object->material);
+        w->used = w->object;
+    }
+    return object;
+}
+
+enum { DONE, KEPT, LATE }; /* what became of a triangle */
+
+static int begin(ew_picture_work *w)
+{
+    ew_raster_vertex *const v = w->geometry->corner;
+    const int result = ew_raster_begin(w->geometry->raster, &v[0], &v[1], &v[2], (uint16_t)w->end);
+    w->counts.set_up += result > 0;
+    return result;
+}
+
+/* Each triangle of a clipped one's fan: all of them are kept, or none. */
+static EW_OWN_FRAME int keep_fan(ew_picture_work *w, uint32_t number, int corners, ew_place *link,
+                                 const ew_screen_vertex *const screen[3])
+{
+    ew_place *to = link;
+    const ew_place behind = *link;
+    for (int i = 0; i < corners; i++) {
+        ew_clip_corner(w->geometry, i, screen);
+        if (i < 2) continue;
+        const int result = begin(w);
+        if (result < 0) return result;
+        if (result == 0) continue;
+        to = keep(w, number, to);
+        if (to) continue;
+        while (*link != behind) drop(w, link);
+        return LATE;
+    }
+    return *link == behind ? DONE : KEPT;
+}
+
+static EW_OWN_FRAME int draw_fan(ew_picture_work *w, int corners, const ew_screen_vertex *const screen[3])
+{
+    for (int i = 0; i < corners; i++) {
+        ew_clip_corner(w->geometry, i, screen);
+        if (i < 2) continue;
+        const int result = begin(w);
+        if (result < 0) return result;
+        if (result) ew_raster_draw_begun(w->geometry->raster);
+    }
+    return LATE;
+}
+
+static EW_OWN_FRAME int clipped(ew_picture_work *w, const ew_object *object, const uint16_t *index, uint32_t number,
+                                ew_place *link)
+{
+    const ew_screen_vertex *const screen[3] = { &w->screen[0], &w->screen[1], &w->screen[2] };
+    w->geometry->transform = object->transform;
+    const int corners = ew_clip_triangle(w->geometry, &object->mesh, index, screen);
+    if (corners < 3) return DONE;
+    const int result = keep_fan(w, number, corners, link, screen);
+    return result == LATE ? draw_fan(w, corners, screen) : result;
+}
+
+/* A triangle that is not set up: draws its part of the band, unless it is kept, at *link. */
+static EW_OWN_FRAME int start(ew_picture_work *w, const ew_object *object, uint32_t number, ew_place *link)
+{
+    const ew_mesh *mesh = &object->mesh;
+    const uint16_t *index = mesh->indices + (size_t)(number - w->first_triangle) * 3u;
+    ew_screen_vertex *const s = w->screen;
+    for (int k = 0; k < 3; k++) fetch(w, object, index[k], &s[k]);
+    const int any = s[0].outcode | s[1].outcode | s[2].outcode, all = s[0].outcode & s[1].outcode & s[2].outcode;
+    if (any & (EW_OUT_NEAR | EW_OUT_GUARD)) return all & ~EW_OUT_GUARD ? DONE : clipped(w, object, index, number, link);
+    if (all || (!(object->material.flags & EW_DOUBLE_SIDED) && !ew_faces_the_eye(&s[0], &s[1], &s[2]))) return DONE;
+
+    const int32_t uv_unit = (int32_t)1 << (12 - mesh->uv_fraction_bits);
+    ew_raster_vertex *const v = w->geometry->corner;
+    for (int k = 0; k < 3; k++) {
+        ew_corner_from(&v[k], &mesh->vertices[index[k]], &s[k], uv_unit);
+        v[k].colour = mesh->colours ? mesh->colours[index[k]] : ew_white;
+    }
+    const int result = begin(w);
+    if (result <= 0) return result;
+    const int ends = ew_raster_begun_end(w->geometry->raster) <= w->bottom;
+    if (!ends && keep(w, number, link)) return KEPT;
+    ew_raster_draw_begun(w->geometry->raster);
+    return ends ? DONE : LATE;
+}
+
+/* ---- a band ---- */
+
+static int draw_kept(ew_picture_work *w, ew_place **link)
+{
+    ew_active *active = &kept_at(w, **link)->active;
+    int error;
+    object_of(w, active->number, &error);
+    if (error) return error;
+    ew_raster_draw_active(w->geometry->raster, active);
+    if (active->row < active->end) *link = &active->next;
+    else drop(w, *link);
+    return EW_OK;
+}
+
+int ew_draw_band(ew_picture_work *w, uint32_t band)
+{
+    ew_place *kept = &w->kept;
+    uint32_t *late = &w->late;
+    w->object = w->first_triangle = w->first_vertex = 0;
+    for (;;) {
+        const uint32_t k = *kept == EW_NO_PLACE ? EW_NO_TRIANGLE : kept_at(w, *kept)->active.number;
+        const uint32_t l = *late, s = w->next >> EW_NUMBER_BITS == band ? w->next & EW_NUMBER_MASK : EW_NO_TRIANGLE;
+        if (k <= l && k <= s) {
+            if (k == EW_NO_TRIANGLE) break;
+            const int error = draw_kept(w, &kept);
+            if (error) return error;
+            continue;
+        }
+        const uint32_t number = l < s ? l : s;
+        if (l < s) {
+            *late = w->link[number];
+            w->active--;
+            w->counts.again++;
+        } else {
+            w->next = w->link[number];
+        }
+        int result;
+        const ew_object *object = object_of(w, number, &result);
+        if (!result) result = start(w, object, number, kept);
+        if (result < 0) return result;
+        if (result != LATE) continue; /* what was kept is drawn next: it stands at *kept */
+        w->link[number] = *late;
+        *late = number;
+        late = &w->link[number];
+        w->active++;
+    }
+    if (w->active > w->counts.most_active) w->counts.most_active = w->active;
+    return EW_OK;
+}

@@ -1,0 +1,300 @@
+/* A whole picture: the memory that it takes, triangles sorted by band, one band after the other. */
+#include "picture.h"
+
+
+/* ---- memory ---- */
+
+enum { ALIGNMENT = 8 };
+
+/* What a picture needs, in the order in which it lies in memory. */
+typedef struct memory_plan {
+    uint32_t stride, rows, bands;  /* rows of a band, and how many bands there are            */
+    uint32_t triangles, vertices;  /* to be linked and mapped, 0 where there is one band       */
+    uint32_t screen;               /* vertices to be kept while an object is drawn, likewise    */
+    size_t colour, depth;          /* bytes of a band                                         */
+    size_t bands_bytes;            /* of all buffers and depth, in which the lists' heads fit   */
+    size_t least;                  /* with what alignment may take                            */
+} memory_plan;
+
+static size_t aligned(size_t bytes) { return (bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT; }
+
+static int is_valid(const ew_picture *p)
+{
+    return p->width >= 1 && p->width <= EW_TARGET_MAX && p->height >= 1 && p->height <= EW_TARGET_MAX &&
+           p->format <= EW_TARGET_MONO && p->visibility <= EW_DEPTH_NONE && p->buffers >= 1 && p->buffers <= 2 &&
+           p->rows >= 1 && p->rows <= p->height && p->first_row < p->end_row && p->end_row <= p->height &&
+           p->scissor.x0 <= p->scissor.x1 && p->scissor.y0 <= p->scissor.y1 && p->scissor.x1 <= p->width &&
+           p->scissor.y1 <= p->height && p->fog_far <= p->fog_near;
+}
+
+/* Returns 0 for what cannot be drawn. */
+static int count_objects(memory_plan *plan, const ew_object *objects, uint32_t count)
+{
+    uint32_t triangles = 0, vertices = 0, most = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t of_this = objects[i].mesh.index_count / 3u;
+        if (of_this >= EW_NO_TRIANGLE - triangles) return 0;
+        triangles += of_this;
+        if (objects[i].mesh.screen) continue;
+        if (objects[i].vertex_count > most) most = objects[i].vertex_count;
+        if (objects[i].vertex_count >= UINT32_C(0xFFFFFF) - vertices) return 0;
+        vertices += objects[i].vertex_count;
+    }
+    plan->triangles = plan->bands > 1 ? triangles : 0;
+    plan->vertices = plan->bands > 1 ? vertices : 0;
+    plan->screen = plan->bands > 1 ? 0 : most;
+    return 1;
+}
+
+/* Returns 0 for what cannot be drawn. */
+static int plan_init(memory_plan *plan, const ew_picture *picture, const ew_object *objects, uint32_t count)
+{
+    static const uint8_t log2_bits[] = { 4, 4, 3, 3, 2, 0 }; /* of a pixel, by format */
+    if (!is_valid(picture)) return 0;
+    const uint32_t all = (uint32_t)(picture->end_row - picture->first_row), bits = log2_bits[picture->format];
+    plan->stride = bits < 3 ? (picture->width + 7u) / 8u * 8u : picture->width; /* whole bytes */
+    plan->rows = picture->rows < all ? picture->rows : all;
+    plan->bands = (all + plan->rows - 1u) / plan->rows;
+    if (!count_objects(plan, objects, count)) return 0;
+    const size_t pixels = (size_t)plan->stride * plan->rows;
+    plan->colour = aligned((pixels << bits) / 8u);
+    plan->depth = picture->visibility == EW_DEPTH_BUFFER ? aligned(pixels * sizeof(uint16_t)) : 0;
+    plan->bands_bytes = plan->colour * picture->buffers + plan->depth;
+    if (plan->bands > 1 && plan->bands_bytes < plan->bands * sizeof(uint32_t)) {
+        plan->bands_bytes = aligned(plan->bands * sizeof(uint32_t));
+    }
+    plan->least = ALIGNMENT - 1 + aligned(sizeof(ew_picture_work)) + plan->bands_bytes +
+                  aligned((size_t)plan->screen * sizeof(ew_screen_vertex)) +
+                  aligned((size_t)plan->triangles * sizeof(uint32_t)) + aligned((size_t)plan->vertices * sizeof(uint16_t));
+    return 1;
+}
+
+size_t ew_picture_least(const ew_picture *picture, const ew_object *objects, uint32_t count)
+{
+    memory_plan plan;
+    return plan_init(&plan, picture, objects, count) ? plan.least : 0;
+}
+
+size_t ew_picture_bytes(const ew_picture *picture, const ew_object *objects, uint32_t count, uint32_t active)
+{
+    enum { OF_ACTIVE = 112 };
+    memory_plan plan;
+    if (!plan_init(&plan, picture, objects, count)) return 0;
+    return plan.least + (plan.bands > 1 ? (size_t)active * OF_ACTIVE : 0);
+}
+
+/* Lays out the memory. */
+static EW_OWN_FRAME ew_picture_work *work_init(const memory_plan *plan, const ew_picture *picture, void *memory, size_t bytes)
+{
+    uint8_t *at = memory, *const end = at + bytes;
+    at += (ALIGNMENT - (uintptr_t)at % ALIGNMENT) % ALIGNMENT;
+    ew_picture_work *w = (ew_picture_work *)(void *)at;
+    at += aligned(sizeof *w);
+    w->picture = picture;
+    w->colour = at;
+    w->colour_bytes = (uint32_t)plan->colour;
+    w->depth = plan->depth ? (uint16_t *)(void *)(at + plan->colour * picture->buffers) : NULL;
+    at += plan->bands_bytes;
+    w->slots = (ew_slot *)(void *)at; /* or the vertices of an object, where there is one band */
+    at += aligned((size_t)plan->screen * sizeof(ew_screen_vertex));
+    w->link = (uint32_t *)(void *)at;
+    at += aligned((size_t)plan->triangles * sizeof *w->link);
+    w->map = (uint16_t *)(void *)at;
+    at += aligned((size_t)plan->vertices * sizeof *w->map);
+    const size_t rest = (size_t)(end - at);
+    const ew_picture_counts none = { 0, 0, 0, 0 };
+    w->counts = none;
+    w->slot_count = w->hand = 0;
+    w->late = w->next = EW_NO_TRIANGLE;
+    w->active = 0;
+    if (plan->bands > 1) {
+        w->slots = (ew_slot *)(void *)at;
+        w->slot_count = plan->vertices;
+        if (w->slot_count > rest / 8u / sizeof *w->slots) w->slot_count = (uint32_t)(rest / 8u / sizeof *w->slots);
+        if (w->slot_count > UINT16_MAX) w->slot_count = UINT16_MAX;
+        w->places = at + w->slot_count * sizeof *w->slots;
+        ew_places_init(w, (size_t)(end - w->places));
+    }
+    return w;
+}
+
+/* ---- sorting ---- */
+
+/* What the map has of a vertex while triangles are sorted: the row that it may begin, within those
+ * that are drawn, or that it has none. */
+#define NEAR UINT16_C(0xFFFF)
+#define UNKNOWN UINT16_C(0xFFFE)
+
+static uint16_t row_in_map(const ew_picture_work *w, const ew_screen_vertex *v)
+{
+    if (v->outcode & EW_OUT_NEAR) return NEAR;
+    if (v->outcode & EW_OUT_GUARD) return UNKNOWN;
+    const int32_t row = ew_row_of(v->y);
+    return (uint16_t)(row < w->first ? w->first : row > w->end ? w->end : row);
+}
+
+static EW_OWN_FRAME void map_vertices(ew_picture_work *w, const ew_object *object)
+{
+    uint16_t *map = w->map + w->first_vertex;
+    for (uint32_t i = 0; i < object->vertex_count; i += EW_BATCH) {
+        const uint32_t left = object->vertex_count - i, n = left < EW_BATCH ? left : EW_BATCH;
+        ew_transform_vertices(&object->transform, &object->mesh.vertices[i], n, w->screen);
+        for (uint32_t k = 0; k < n; k++) map[i + k] = row_in_map(w, &w->screen[k]);
+    }
+    w->counts.transformed += object->vertex_count;
+}
+
+/* The row that a triangle begins in, or w->end when it covers no row. */
+static int32_t first_row_of(const ew_picture_work *w, const uint16_t row[3])
+{
+    uint16_t low = row[0], high = row[0];
+    for (int k = 1; k < 3; k++) {
+        if (row[k] < low) low = row[k];
+        if (row[k] > high) high = row[k];
+    }
+    if (low == NEAR) return w->end;
+    if (high >= UNKNOWN) return w->first;
+    return low < high ? low : w->end;
+}
+
+/* Puts an object's triangles before those of their bands. */
+static EW_OWN_FRAME void sort_object(ew_picture_work *w, const ew_object *object, uint32_t rows, uint32_t *heads)
+{
+    const uint16_t *index = object->mesh.indices;
+    const uint16_t *map = w->map + w->first_vertex;
+    for (uint32_t i = 0; i < object->mesh.index_count; i += 3, index += 3) {
+        uint16_t row[3];
+        for (int k = 0; k < 3; k++) {
+            row[k] = object->mesh.screen ? row_in_map(w, &object->mesh.screen[index[k]]) : map[index[k]];
+        }
+        const int32_t first = first_row_of(w, row);
+        if (first >= w->end) continue;
+        const uint32_t below = (uint32_t)(first - w->picture->first_row), number = w->first_triangle + i / 3u;
+        uint32_t *head = &heads[rows == 1 ? below : below / rows];
+        w->link[number] = *head;
+        *head = number;
+    }
+}
+
+/* Leaves the sorted list in w->next. The heads of the bands' lists lie where bands will be. */
+static EW_OWN_FRAME void sort(ew_picture_work *w, const memory_plan *plan)
+{
+    uint32_t *heads = (uint32_t *)(void *)w->colour;
+    for (uint32_t i = 0; i < plan->bands; i++) heads[i] = EW_NO_TRIANGLE;
+    w->first_triangle = w->first_vertex = 0;
+    for (uint32_t i = 0; i < w->count; i++) {
+        const ew_object *object = &w->objects[i];
+        if (!object->mesh.screen) map_vertices(w, object);
+        sort_object(w, object, plan->rows, heads);
+        w->first_triangle += object->mesh.index_count / 3u;
+        if (!object->mesh.screen) w->first_vertex += object->vertex_count;
+    }
+    /* the last come first there: taken from the last band on, they come out in order */
+    w->next = UINT32_MAX;
+    for (uint32_t band = plan->bands; band-- > 0;) {
+        for (uint32_t number = heads[band], behind; number != EW_NO_TRIANGLE; number = behind) {
+            behind = w->link[number];
+            w->link[number] = w->next;
+            w->next = number | band << EW_NUMBER_BITS;
+        }
+    }
+    for (uint32_t i = 0; i < w->slot_count; i++) {
+        w->slots[i].y = -EW_GUARD_PX * 4096; /* above everything */
+        w->slots[i].tag = UINT32_MAX;
+    }
+}
+
+/* ---- drawing ---- */
+
+/* The picture at once: nothing has to be sorted. */
+static EW_OWN_FRAME int draw_at_once(ew_picture_work *w)
+{
+    for (uint32_t i = 0; i < w->count; i++) {
+        const ew_object *object = &w->objects[i];
+        ew_screen_vertex *screen = (ew_screen_vertex *)(void *)w->slots;
+        int error = ew_raster_set_material(w->geometry->raster, &object->material);
+        if (error) return error;
+        w->geometry->transform = object->transform;
+        ew_mesh *mesh = &w->geometry->scene.mesh;
+        *mesh = object->mesh;
+        if (!mesh->screen) {
+            ew_transform_vertices(&object->transform, mesh->vertices, object->vertex_count, screen);
+            w->counts.transformed += object->vertex_count;
+            mesh->screen = screen;
+        }
+        int32_t drawn = ew_draw_triangles(w->geometry, mesh);
+        if (drawn < 0) return (int)drawn;
+        w->counts.set_up += (uint32_t)drawn;
+    }
+    return EW_OK;
+}
+
+/* Goes to a band and clears it; the scissor is what of the picture's lies in it. Returns whether
+ * that is anything. */
+static EW_OWN_FRAME int start_band(ew_picture_work *w, uint32_t band, int32_t row, int32_t rows)
+{
+    ew_raster *raster = w->geometry->raster;
+    const ew_picture *p = w->picture;
+    uint8_t *colour = w->colour + (p->buffers > 1 && band & 1u ? w->colour_bytes : 0);
+    ew_raster_set_rows(raster, colour, w->depth, (uint16_t)row, (uint16_t)rows);
+    ew_rect rect = { 0, (uint16_t)row, p->width, (uint16_t)(row + rows) };
+    ew_raster_set_scissor(raster, &rect);
+    ew_raster_clear(raster, p->background);
+    w->top = row > w->first ? row : w->first;
+    w->bottom = row + rows < w->end ? row + rows : w->end;
+    if (w->top >= w->bottom) return 0;
+    rect.x0 = p->scissor.x0, rect.x1 = p->scissor.x1;
+    rect.y0 = (uint16_t)w->top, rect.y1 = (uint16_t)w->bottom;
+    ew_raster_set_scissor(raster, &rect);
+    return 1;
+}
+
+static EW_OWN_FRAME int init_raster(const ew_picture_work *w, const memory_plan *plan)
+{
+    const ew_picture *p = w->picture;
+    ew_raster *raster = w->geometry->raster;
+    const ew_target target = { .colour = w->colour, .depth = w->depth, .width = p->width, .height = (uint16_t)plan->rows,
+                               .stride = (uint16_t)plan->stride, .format = p->format, .dither = p->dither,
+                               .first_row = p->first_row };
+    int error = ew_raster_init(raster, &target);
+    if (!error && p->cost) error = ew_raster_set_cost(raster, p->cost);
+    if (!error && p->fog_near) error = ew_raster_set_fog(raster, p->fog_colour, p->fog_near, p->fog_far);
+    for (uint32_t i = 0; i < w->count && !error; i++) error = ew_raster_set_material(raster, &w->objects[i].material);
+    return error;
+}
+
+static EW_OWN_FRAME int draw_bands(ew_picture_work *w, const memory_plan *plan)
+{
+    const ew_picture *p = w->picture;
+    if (plan->bands > 1) sort(w, plan);
+    int32_t row = p->first_row;
+    for (uint32_t band = 0; band < plan->bands; band++) {
+        const int32_t left = p->end_row - row, rows = (int32_t)plan->rows < left ? (int32_t)plan->rows : left;
+        if (start_band(w, band, row, rows)) {
+            const int error = plan->bands > 1 ? ew_draw_band(w, band) : draw_at_once(w);
+            if (error) return error;
+        }
+        p->band(p->user, &w->geometry->raster->target);
+        row += rows;
+    }
+    return EW_OK;
+}
+
+int ew_picture_draw(const ew_picture *picture, const ew_object *objects, uint32_t count, ew_geometry *geometry,
+                    void *memory, size_t bytes, ew_picture_counts *counts)
+{
+    memory_plan plan;
+    if (!plan_init(&plan, picture, objects, count)) return EW_ERR_ARGUMENT;
+    if (bytes < plan.least) return EW_ERR_ROOM;
+    ew_picture_work *w = work_init(&plan, picture, memory, bytes);
+    w->objects = objects;
+    w->count = count;
+    w->geometry = geometry;
+    w->used = UINT32_MAX;
+    w->first = picture->scissor.y0 > picture->first_row ? picture->scissor.y0 : picture->first_row;
+    w->end = picture->scissor.y1 < picture->end_row ? picture->scissor.y1 : picture->end_row;
+    int error = init_raster(w, &plan);
+    if (!error) error = draw_bands(w, &plan);
+    if (counts) *counts = w->counts;
+    return error;
+}

@@ -1,0 +1,83 @@
+/* A picture while it is drawn (private to the geometry layer).
+ *
+ * All visible triangles stand in a list sorted by the band that they begin in, then by number:
+ * their place in the order of drawing. A band draws, by number, those that begin in it and those
+ * that reach into it. Of the latter some were kept (active.c): set up, ready to go on. Those that
+ * found no room are late: set up again for each band. Merging three lists by number is what makes
+ * the picture independent of bands.
+ */
+#ifndef EW_GEOMETRY_PICTURE_H
+#define EW_GEOMETRY_PICTURE_H
+
+#include "edgewalk/picture.h"
+#include "project.h"
+
+/* Links between triangles: the number of the next, and above it the band that it begins in. */
+enum { EW_NUMBER_BITS = 20 };
+#define EW_NUMBER_MASK ((UINT32_C(1) << EW_NUMBER_BITS) - 1u)
+#define EW_NO_TRIANGLE EW_NUMBER_MASK
+
+/* A place among the kept ones: 8 bytes each, or none. */
+typedef uint16_t ew_place;
+#define EW_NO_PLACE UINT16_C(0xFFFF)
+
+/* What stands in a place: a kept triangle, or a gap with the next one behind it. */
+typedef union ew_kept {
+    ew_active active;
+    struct {
+        uint16_t places;
+        ew_place next;
+    } gap;
+} ew_kept;
+
+/* A vertex that later triangles will need. */
+typedef struct ew_slot {
+    ew_uq1_31 w;
+    ew_q20_12 x, y;
+    uint32_t tag; /* the vertex's number times 2^8, and its outcode                          */
+} ew_slot;
+
+enum { EW_BATCH = 8 };
+
+typedef struct ew_picture_work {
+    const ew_picture *picture;
+    const ew_object *objects;
+    uint32_t count;
+    ew_geometry *geometry;
+    ew_picture_counts counts;
+    int32_t first, end;   /* rows that triangles are drawn in                               */
+    int32_t top, bottom;  /* rows of the band at hand among them                            */
+    /* Memory. */
+    uint8_t *colour;
+    uint16_t *depth;
+    uint32_t colour_bytes; /* of one band                                                    */
+    uint32_t *link;       /* one for each triangle                                          */
+    uint16_t *map;        /* one for each vertex: its row, then the slot that may have it   */
+    ew_slot *slots;
+    uint32_t slot_count, hand; /* hand: where a slot was taken last                         */
+    uint8_t *places;      /* multiples of 8 bytes                                           */
+    /* Lists. */
+    ew_place kept, gaps;
+    uint32_t late, next;  /* next: of those that begin, with its band                       */
+    uint32_t active;      /* how many stand in kept and late                                */
+    /* The object at hand, by number, and the one whose material the raster has. */
+    uint32_t object, first_triangle, first_vertex, used;
+    ew_screen_vertex screen[EW_BATCH];
+} ew_picture_work;
+
+/* The first row whose centre is at or below y: where a triangle may begin. */
+static inline int32_t ew_row_of(ew_q20_12 y)
+{
+    const int32_t half = 1 << (EW_SUBPIXEL_BITS - 1);
+    return EW_ASR(ew_snapped_from_q20_12(y) + half - 1, EW_SUBPIXEL_BITS);
+}
+
+/* ---- active.c ---- */
+
+/* Makes all places one gap. */
+void ew_places_init(ew_picture_work *w, size_t bytes);
+
+/* Draws what lies in the band at hand, whose number is `band`. Returns EW_OK or an error. */
+int ew_draw_band(ew_picture_work *w, uint32_t band);
+
+#endif
