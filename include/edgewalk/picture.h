@@ -54,7 +54,7 @@ typedef struct ew_picture {
 
 /* What happened, for those who tune. */
 typedef struct ew_picture_counts {
-    uint32_t set_up;      /* triangles and parts of clipped ones                              */
+    uint32_t set_up;      /* triangles and parts of clipped ones; not in one band             */
     uint32_t again;       /* set-ups of triangles that were set up before: for want of memory  */
     uint32_t transformed; /* vertices                                                         */
     uint32_t most_active; /* triangles that went on to another band, at most                  */

@@ -74,13 +74,13 @@ static void drop(ew_picture_work *w, ew_place *link)
 
 /* Keeps the triangle that was begun, before the one that *link leads to. Returns where it leads on,
  * or NULL where there is no room. */
-static ew_place *keep(ew_picture_work *w, uint32_t number, ew_place *link)
+static ew_place *keep(ew_picture_work *w, ew_place *link)
 {
     const ew_place place = take_places(w, places_of(&w->geometry->raster->work.triangle));
     if (place == EW_NO_PLACE) return NULL;
     ew_active *active = &kept_at(w, place)->active;
     ew_raster_keep(w->geometry->raster, active);
-    active->number = number;
+    active->number = w->number;
     active->next = *link;
     *link = place;
     w->active++;
@@ -107,9 +107,12 @@ static void take_slot(ew_picture_work *w, uint32_t number, const ew_screen_verte
     }
 }
 
-/* A vertex of the object at hand. */
-static EW_OWN_FRAME void fetch(ew_picture_work *w, const ew_object *object, uint16_t vertex, ew_screen_vertex *out)
+/* Corner k of the triangle at hand, to w->screen. */
+static EW_OWN_FRAME void fetch(ew_picture_work *w, int k)
 {
+    const ew_object *object = w->at;
+    const uint16_t vertex = object->mesh.indices[(size_t)(w->number - w->first_triangle) * 3u + (unsigned)k];
+    ew_screen_vertex *out = &w->screen[k];
     if (object->mesh.screen) {
         *out = object->mesh.screen[vertex];
         return;
@@ -123,92 +126,88 @@ static EW_OWN_FRAME void fetch(ew_picture_work *w, const ew_object *object, uint
         return;
     }
     ew_transform_vertices(&object->transform, &object->mesh.vertices[vertex], 1, out);
-    w->counts.transformed++;
+    w->counts->transformed++;
     take_slot(w, number, out);
 }
 
 /* ---- triangles ---- */
 
-/* Makes the triangle's object the one at hand: numbers grow within a band. Returns it, or NULL and
- * an error of the raster's. */
-static const ew_object *object_of(ew_picture_work *w, uint32_t number, int *error)
+/* Makes a triangle and its object the ones at hand: numbers grow within a band. Returns EW_OK or an
+ * error of the raster's. */
+static int go_to(ew_picture_work *w, uint32_t number)
 {
     const ew_object *object = &w->objects[w->object];
+    w->number = number;
     while (number - w->first_triangle >= object->mesh.index_count / 3u) {
         w->first_triangle += object->mesh.index_count / 3u;
         if (!object->mesh.screen) w->first_vertex += object->vertex_count;
         object = &w->objects[++w->object];
     }
-    *error = EW_OK;
-    if (w->used != w->object) {
-        *error = ew_raster_set_material(w->geometry->raster, &object->material);
-        w->used = w->object;
-    }
-    return object;
+    w->at = object;
+    if (w->used == w->object) return EW_OK;
+    w->used = w->object;
+    return ew_raster_set_material(w->geometry->raster, &object->material);
 }
 
-enum { DONE, KEPT, LATE }; /* what became of a triangle */
+/* What becomes of a triangle in the band at hand: there is nothing to be drawn; it is kept; there is none
+ * any more; what the raster has set up is to be drawn, and that was all or the rest is late; the
+ * triangles of a fan are to be drawn, one after the other, and are late, too. */
+enum { DONE, KEPT, BAND_DONE, DRAW, DRAW_LATE, DRAW_FAN };
 
 static int begin(ew_picture_work *w)
 {
     ew_raster_vertex *const v = w->geometry->corner;
     const int result = ew_raster_begin(w->geometry->raster, &v[0], &v[1], &v[2], (uint16_t)w->end);
-    w->counts.set_up += result > 0;
+    w->counts->set_up += result > 0;
     return result;
 }
 
 /* Each triangle of a clipped one's fan: all of them are kept, or none. */
-static EW_OWN_FRAME int keep_fan(ew_picture_work *w, uint32_t number, int corners, ew_place *link,
-                                 const ew_screen_vertex *const screen[3])
+static EW_OWN_FRAME int keep_fan(ew_picture_work *w)
 {
-    ew_place *to = link;
+    ew_place *const link = w->kept_link, *to = link;
     const ew_place behind = *link;
-    for (int i = 0; i < corners; i++) {
-        ew_clip_corner(w->geometry, i, screen);
-        if (i < 2) continue;
+    while (ew_clip_next(w->geometry)) {
         const int result = begin(w);
         if (result < 0) return result;
         if (result == 0) continue;
-        to = keep(w, number, to);
+        to = keep(w, to);
         if (to) continue;
         while (*link != behind) drop(w, link);
-        return LATE;
+        w->geometry->clipped_next = 0;
+        return DRAW_FAN;
     }
     return *link == behind ? DONE : KEPT;
 }
 
-static EW_OWN_FRAME int draw_fan(ew_picture_work *w, int corners, const ew_screen_vertex *const screen[3])
+/* Sets the next triangle of the fan up: 1, 0 behind the last, or an error. */
+static EW_OWN_FRAME int next_of_fan(ew_picture_work *w)
 {
-    for (int i = 0; i < corners; i++) {
-        ew_clip_corner(w->geometry, i, screen);
-        if (i < 2) continue;
+    while (ew_clip_next(w->geometry)) {
         const int result = begin(w);
-        if (result < 0) return result;
-        if (result) ew_raster_draw_begun(w->geometry->raster);
+        if (result) return result;
     }
-    return LATE;
+    return 0;
 }
 
-static EW_OWN_FRAME int clipped(ew_picture_work *w, const ew_object *object, const uint16_t *index, uint32_t number,
-                                ew_place *link)
+static EW_OWN_FRAME int clipped(ew_picture_work *w, const uint16_t *index)
 {
-    const ew_screen_vertex *const screen[3] = { &w->screen[0], &w->screen[1], &w->screen[2] };
-    w->geometry->transform = object->transform;
-    const int corners = ew_clip_triangle(w->geometry, &object->mesh, index, screen);
-    if (corners < 3) return DONE;
-    const int result = keep_fan(w, number, corners, link, screen);
-    return result == LATE ? draw_fan(w, corners, screen) : result;
+    for (int k = 0; k < 3; k++) w->geometry->clip_screen[k] = &w->screen[k];
+    w->geometry->transform = w->at->transform;
+    ew_clip_triangle(w->geometry, &w->at->mesh, index);
+    return keep_fan(w);
 }
 
-/* A triangle that is not set up: draws its part of the band, unless it is kept, at *link. */
-static EW_OWN_FRAME int start(ew_picture_work *w, const ew_object *object, uint32_t number, ew_place *link)
+/* Sets the triangle at hand up, with its corners in w->screen; kept ones stand at *kept_link then.
+ * Returns one of the above or an error. */
+static EW_OWN_FRAME int start(ew_picture_work *w)
 {
+    const ew_object *object = w->at;
     const ew_mesh *mesh = &object->mesh;
-    const uint16_t *index = mesh->indices + (size_t)(number - w->first_triangle) * 3u;
-    ew_screen_vertex *const s = w->screen;
-    for (int k = 0; k < 3; k++) fetch(w, object, index[k], &s[k]);
+    const uint16_t *index = mesh->indices + (size_t)(w->number - w->first_triangle) * 3u;
+    const ew_screen_vertex *const s = w->screen;
     const int any = s[0].outcode | s[1].outcode | s[2].outcode, all = s[0].outcode & s[1].outcode & s[2].outcode;
-    if (any & (EW_OUT_NEAR | EW_OUT_GUARD)) return all & ~EW_OUT_GUARD ? DONE : clipped(w, object, index, number, link);
+    if (any & (EW_OUT_NEAR | EW_OUT_GUARD)) return all & ~EW_OUT_GUARD ? DONE : clipped(w, index);
     if (all || (!(object->material.flags & EW_DOUBLE_SIDED) && !ew_faces_the_eye(&s[0], &s[1], &s[2]))) return DONE;
 
     const int32_t uv_unit = (int32_t)1 << (12 - mesh->uv_fraction_bits);
@@ -219,58 +218,79 @@ static EW_OWN_FRAME int start(ew_picture_work *w, const ew_object *object, uint3
     }
     const int result = begin(w);
     if (result <= 0) return result;
-    const int ends = ew_raster_begun_end(w->geometry->raster) <= w->bottom;
-    if (!ends && keep(w, number, link)) return KEPT;
-    ew_raster_draw_begun(w->geometry->raster);
-    return ends ? DONE : LATE;
+    if (ew_raster_begun_end(w->geometry->raster) <= w->bottom) return DRAW;
+    return keep(w, w->kept_link) ? KEPT : DRAW_LATE;
 }
 
 /* ---- a band ---- */
 
-static int draw_kept(ew_picture_work *w, ew_place **link)
+/* The number of the triangle that *link leads to. */
+static uint32_t number_at(const ew_picture_work *w, ew_place link)
 {
-    ew_active *active = &kept_at(w, **link)->active;
-    int error;
-    object_of(w, active->number, &error);
-    if (error) return error;
-    ew_raster_draw_active(w->geometry->raster, active);
-    if (active->row < active->end) *link = &active->next;
-    else drop(w, *link);
-    return EW_OK;
+    return link == EW_NO_PLACE ? EW_NO_TRIANGLE : kept_at(w, link)->active.number;
 }
 
-int ew_draw_band(ew_picture_work *w, uint32_t band)
+/* Takes a late triangle, or else the next to begin, out of its list. */
+static EW_OWN_FRAME int take(ew_picture_work *w, uint32_t number, int is_late)
 {
-    ew_place *kept = &w->kept;
-    uint32_t *late = &w->late;
-    w->object = w->first_triangle = w->first_vertex = 0;
-    for (;;) {
-        const uint32_t k = *kept == EW_NO_PLACE ? EW_NO_TRIANGLE : kept_at(w, *kept)->active.number;
-        const uint32_t l = *late, s = w->next >> EW_NUMBER_BITS == band ? w->next & EW_NUMBER_MASK : EW_NO_TRIANGLE;
-        if (k <= l && k <= s) {
-            if (k == EW_NO_TRIANGLE) break;
-            const int error = draw_kept(w, &kept);
-            if (error) return error;
-            continue;
-        }
-        const uint32_t number = l < s ? l : s;
-        if (l < s) {
-            *late = w->link[number];
-            w->active--;
-            w->counts.again++;
-        } else {
-            w->next = w->link[number];
-        }
-        int result;
-        const ew_object *object = object_of(w, number, &result);
-        if (!result) result = start(w, object, number, kept);
-        if (result < 0) return result;
-        if (result != LATE) continue; /* what was kept is drawn next: it stands at *kept */
-        w->link[number] = *late;
-        *late = number;
-        late = &w->link[number];
-        w->active++;
+    if (is_late) {
+        *w->late_link = w->link[number];
+        w->active--;
+        w->counts->again++;
+    } else {
+        w->next = w->link[number];
     }
-    if (w->active > w->counts.most_active) w->counts.most_active = w->active;
-    return EW_OK;
+    return go_to(w, number);
+}
+
+static void put_late(ew_picture_work *w)
+{
+    uint32_t *link = &w->link[w->number];
+    *link = *w->late_link;
+    *w->late_link = w->number;
+    w->late_link = link;
+    w->active++;
+}
+
+/* Makes the next triangle ready to be drawn: returns it where it was kept, else says in *result
+ * what is to be done, or an error. */
+static EW_OWN_FRAME ew_active *next_triangle(ew_picture_work *w, int *result)
+{
+    for (;;) {
+        const uint32_t k = number_at(w, *w->kept_link), l = *w->late_link;
+        const uint32_t s = w->next >> EW_NUMBER_BITS == w->band ? w->next & EW_NUMBER_MASK : EW_NO_TRIANGLE;
+        if (k <= l && k <= s) {
+            *result = k == EW_NO_TRIANGLE ? BAND_DONE : go_to(w, k);
+            return *result ? NULL : &kept_at(w, *w->kept_link)->active;
+        }
+        *result = take(w, l < s ? l : s, l < s);
+        if (*result < 0) return NULL;
+        for (int i = 0; i < 3; i++) fetch(w, i);
+        *result = start(w);
+        if (*result >= DRAW_LATE) put_late(w);
+        if (*result < 0 || *result >= DRAW) return NULL;
+        /* what was kept is drawn next: it stands at *kept_link */
+    }
+}
+
+int ew_draw_band(ew_picture_work *w)
+{
+    int result;
+    w->kept_link = &w->kept;
+    w->late_link = &w->late;
+    w->object = w->first_triangle = w->first_vertex = 0;
+    do {
+        ew_active *active = next_triangle(w, &result);
+        if (active) {
+            ew_raster_draw_active(w->geometry->raster, active);
+            if (active->row < active->end) w->kept_link = &active->next;
+            else drop(w, w->kept_link);
+        } else if (result == DRAW_FAN) {
+            while ((result = next_of_fan(w)) > 0) ew_raster_draw_begun(w->geometry->raster);
+        } else if (result >= DRAW) {
+            ew_raster_draw_begun(w->geometry->raster);
+        }
+    } while (result >= 0 && result != BAND_DONE);
+    if (w->active > w->counts->most_active) w->counts->most_active = w->active;
+    return result < 0 ? result : EW_OK;
 }

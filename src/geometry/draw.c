@@ -22,6 +22,7 @@ int32_t ew_draw_triangles(ew_geometry *geometry, const ew_mesh *mesh)
     const int one_sided = !(geometry->raster->material.flags & EW_DOUBLE_SIDED);
     for (int k = 0; k < 3; k++) geometry->corner[k].colour = ew_white;
 
+    ew_raster_vertex *const v = geometry->corner;
     int32_t drawn = 0;
     const uint16_t *index = mesh->indices, *const end = index + mesh->index_count;
     for (; index < end; index += 3) {
@@ -30,12 +31,17 @@ int32_t ew_draw_triangles(ew_geometry *geometry, const ew_mesh *mesh)
         int result;
         if (any & (EW_OUT_NEAR | EW_OUT_GUARD)) {
             if (a->outcode & b->outcode & c->outcode & ~EW_OUT_GUARD) continue;
-            result = ew_draw_clipped(geometry, mesh, index);
+            geometry->clip_screen[0] = a, geometry->clip_screen[1] = b, geometry->clip_screen[2] = c;
+            ew_clip_triangle(geometry, mesh, index);
+            result = 0;
+            while (result >= 0 && ew_clip_next(geometry)) {
+                const int reached = ew_raster_triangle_in_range(geometry->raster, &v[0], &v[1], &v[2]);
+                result = reached < 0 ? reached : result | reached;
+            }
         } else {
             if (any && (a->outcode & b->outcode & c->outcode)) continue;
             if (one_sided && !ew_faces_the_eye(a, b, c)) continue;
             take_corners(geometry, mesh, index);
-            ew_raster_vertex *const v = geometry->corner;
             result = ew_raster_triangle_in_range(geometry->raster, &v[0], &v[1], &v[2]);
         }
         if (result < 0) return result;

@@ -11,12 +11,12 @@ typedef struct memory_plan {
     uint32_t stride, rows, bands;  /* rows of a band, and how many bands there are            */
     uint32_t triangles, vertices;  /* to be linked and mapped, 0 where there is one band       */
     uint32_t screen;               /* vertices to be kept while an object is drawn, likewise    */
-    size_t colour, depth;          /* bytes of a band                                         */
-    size_t bands_bytes;            /* of all buffers and depth, in which the lists' heads fit   */
-    size_t least;                  /* with what alignment may take                            */
+    uint32_t colour, depth;        /* bytes of a band                                         */
+    uint32_t bands_bytes;          /* of all buffers and depth, in which the lists' heads fit   */
+    uint32_t least;                /* with what alignment may take; below 2^28                 */
 } memory_plan;
 
-static size_t aligned(size_t bytes) { return (bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT; }
+static uint32_t aligned(uint32_t bytes) { return (bytes + ALIGNMENT - 1u) / ALIGNMENT * ALIGNMENT; }
 
 static int is_valid(const ew_picture *p)
 {
@@ -56,23 +56,21 @@ static int plan_init(memory_plan *plan, const ew_picture *picture, const ew_obje
     plan->rows = picture->rows < all ? picture->rows : all;
     plan->bands = (all + plan->rows - 1u) / plan->rows;
     if (!count_objects(plan, objects, count)) return 0;
-    const size_t pixels = (size_t)plan->stride * plan->rows;
+    const uint32_t pixels = plan->stride * plan->rows; /* <= 2^24 */
     plan->colour = aligned((pixels << bits) / 8u);
-    plan->depth = picture->visibility == EW_DEPTH_BUFFER ? aligned(pixels * sizeof(uint16_t)) : 0;
+    plan->depth = picture->visibility == EW_DEPTH_BUFFER ? aligned(pixels * 2u) : 0;
     plan->bands_bytes = plan->colour * picture->buffers + plan->depth;
-    if (plan->bands > 1 && plan->bands_bytes < plan->bands * sizeof(uint32_t)) {
-        plan->bands_bytes = aligned(plan->bands * sizeof(uint32_t));
-    }
-    plan->least = ALIGNMENT - 1 + aligned(sizeof(ew_picture_work)) + plan->bands_bytes +
-                  aligned((size_t)plan->screen * sizeof(ew_screen_vertex)) +
-                  aligned((size_t)plan->triangles * sizeof(uint32_t)) + aligned((size_t)plan->vertices * sizeof(uint16_t));
-    return 1;
+    if (plan->bands > 1 && plan->bands_bytes < plan->bands * 4u) plan->bands_bytes = aligned(plan->bands * 4u);
+    plan->least = ALIGNMENT - 1u + aligned(sizeof(ew_picture_work)) + plan->bands_bytes +
+                  aligned(plan->screen * (uint32_t)sizeof(ew_screen_vertex)) + aligned(plan->triangles * 4u) +
+                  aligned(plan->vertices * 2u);
+    return sizeof(size_t) > 2 || plan->least <= UINT16_MAX;
 }
 
 size_t ew_picture_least(const ew_picture *picture, const ew_object *objects, uint32_t count)
 {
     memory_plan plan;
-    return plan_init(&plan, picture, objects, count) ? plan.least : 0;
+    return plan_init(&plan, picture, objects, count) ? (size_t)plan.least : 0;
 }
 
 size_t ew_picture_bytes(const ew_picture *picture, const ew_object *objects, uint32_t count, uint32_t active)
@@ -80,30 +78,37 @@ size_t ew_picture_bytes(const ew_picture *picture, const ew_object *objects, uin
     enum { OF_ACTIVE = 112 };
     memory_plan plan;
     if (!plan_init(&plan, picture, objects, count)) return 0;
-    return plan.least + (plan.bands > 1 ? (size_t)active * OF_ACTIVE : 0);
+    const uint32_t most = (uint32_t)(SIZE_MAX / 2u - plan.least) / OF_ACTIVE;
+    return (size_t)plan.least + (plan.bands > 1 ? (size_t)(active < most ? active : most) * OF_ACTIVE : 0);
+}
+
+/* The first thing in the memory. */
+static ew_picture_work *work_in(void *memory)
+{
+    return (void *)((uint8_t *)memory + (ALIGNMENT - (uintptr_t)memory % ALIGNMENT) % ALIGNMENT);
 }
 
 /* Lays out the memory. */
-static EW_OWN_FRAME ew_picture_work *work_init(const memory_plan *plan, const ew_picture *picture, void *memory, size_t bytes)
+static ew_picture_work *work_init(const memory_plan *plan, const ew_picture *picture, void *memory, size_t bytes)
 {
-    uint8_t *at = memory, *const end = at + bytes;
-    at += (ALIGNMENT - (uintptr_t)at % ALIGNMENT) % ALIGNMENT;
-    ew_picture_work *w = (ew_picture_work *)(void *)at;
-    at += aligned(sizeof *w);
+    ew_picture_work *w = work_in(memory);
+    uint8_t *at = (uint8_t *)w + aligned(sizeof *w), *const end = (uint8_t *)memory + bytes;
     w->picture = picture;
+    w->rows = plan->rows, w->bands = plan->bands, w->stride = plan->stride;
     w->colour = at;
-    w->colour_bytes = (uint32_t)plan->colour;
+    w->colour_bytes = plan->colour;
     w->depth = plan->depth ? (uint16_t *)(void *)(at + plan->colour * picture->buffers) : NULL;
     at += plan->bands_bytes;
     w->slots = (ew_slot *)(void *)at; /* or the vertices of an object, where there is one band */
-    at += aligned((size_t)plan->screen * sizeof(ew_screen_vertex));
+    at += aligned(plan->screen * (uint32_t)sizeof(ew_screen_vertex));
     w->link = (uint32_t *)(void *)at;
-    at += aligned((size_t)plan->triangles * sizeof *w->link);
+    at += aligned(plan->triangles * 4u);
     w->map = (uint16_t *)(void *)at;
-    at += aligned((size_t)plan->vertices * sizeof *w->map);
+    at += aligned(plan->vertices * 2u);
     const size_t rest = (size_t)(end - at);
     const ew_picture_counts none = { 0, 0, 0, 0 };
-    w->counts = none;
+    w->own_counts = none;
+    w->counts = &w->own_counts;
     w->slot_count = w->hand = 0;
     w->late = w->next = EW_NO_TRIANGLE;
     w->active = 0;
@@ -141,7 +146,7 @@ static EW_OWN_FRAME void map_vertices(ew_picture_work *w, const ew_object *objec
         ew_transform_vertices(&object->transform, &object->mesh.vertices[i], n, w->screen);
         for (uint32_t k = 0; k < n; k++) map[i + k] = row_in_map(w, &w->screen[k]);
     }
-    w->counts.transformed += object->vertex_count;
+    w->counts->transformed += object->vertex_count;
 }
 
 /* The row that a triangle begins in, or w->end when it covers no row. */
@@ -158,7 +163,7 @@ static int32_t first_row_of(const ew_picture_work *w, const uint16_t row[3])
 }
 
 /* Puts an object's triangles before those of their bands. */
-static EW_OWN_FRAME void sort_object(ew_picture_work *w, const ew_object *object, uint32_t rows, uint32_t *heads)
+static EW_OWN_FRAME void sort_object(ew_picture_work *w, const ew_object *object, uint32_t *heads)
 {
     const uint16_t *index = object->mesh.indices;
     const uint16_t *map = w->map + w->first_vertex;
@@ -170,28 +175,28 @@ static EW_OWN_FRAME void sort_object(ew_picture_work *w, const ew_object *object
         const int32_t first = first_row_of(w, row);
         if (first >= w->end) continue;
         const uint32_t below = (uint32_t)(first - w->picture->first_row), number = w->first_triangle + i / 3u;
-        uint32_t *head = &heads[rows == 1 ? below : below / rows];
+        uint32_t *head = &heads[w->rows == 1 ? below : below / w->rows];
         w->link[number] = *head;
         *head = number;
     }
 }
 
 /* Leaves the sorted list in w->next. The heads of the bands' lists lie where bands will be. */
-static EW_OWN_FRAME void sort(ew_picture_work *w, const memory_plan *plan)
+static EW_OWN_FRAME void sort(ew_picture_work *w)
 {
     uint32_t *heads = (uint32_t *)(void *)w->colour;
-    for (uint32_t i = 0; i < plan->bands; i++) heads[i] = EW_NO_TRIANGLE;
+    for (uint32_t i = 0; i < w->bands; i++) heads[i] = EW_NO_TRIANGLE;
     w->first_triangle = w->first_vertex = 0;
     for (uint32_t i = 0; i < w->count; i++) {
         const ew_object *object = &w->objects[i];
         if (!object->mesh.screen) map_vertices(w, object);
-        sort_object(w, object, plan->rows, heads);
+        sort_object(w, object, heads);
         w->first_triangle += object->mesh.index_count / 3u;
         if (!object->mesh.screen) w->first_vertex += object->vertex_count;
     }
     /* the last come first there: taken from the last band on, they come out in order */
     w->next = UINT32_MAX;
-    for (uint32_t band = plan->bands; band-- > 0;) {
+    for (uint32_t band = w->bands; band-- > 0;) {
         for (uint32_t number = heads[band], behind; number != EW_NO_TRIANGLE; number = behind) {
             behind = w->link[number];
             w->link[number] = w->next;
@@ -206,42 +211,41 @@ static EW_OWN_FRAME void sort(ew_picture_work *w, const memory_plan *plan)
 
 /* ---- drawing ---- */
 
-/* The picture at once: nothing has to be sorted. */
-static EW_OWN_FRAME int draw_at_once(ew_picture_work *w)
+/* The next object of a picture that is drawn at once, where nothing has to be sorted: its mesh is ready
+ * in geometry->scene.mesh. Returns 0 behind the last and after an error. */
+static EW_OWN_FRAME int next_mesh(ew_picture_work *w, int *error)
 {
-    for (uint32_t i = 0; i < w->count; i++) {
-        const ew_object *object = &w->objects[i];
+    if (w->object == w->count) return 0;
+    const ew_object *object = &w->objects[w->object++];
+    ew_mesh *mesh = &w->geometry->scene.mesh;
+    *error = ew_raster_set_material(w->geometry->raster, &object->material);
+    if (*error) return 0;
+    w->geometry->transform = object->transform;
+    *mesh = object->mesh;
+    if (!mesh->screen) {
         ew_screen_vertex *screen = (ew_screen_vertex *)(void *)w->slots;
-        int error = ew_raster_set_material(w->geometry->raster, &object->material);
-        if (error) return error;
-        w->geometry->transform = object->transform;
-        ew_mesh *mesh = &w->geometry->scene.mesh;
-        *mesh = object->mesh;
-        if (!mesh->screen) {
-            ew_transform_vertices(&object->transform, mesh->vertices, object->vertex_count, screen);
-            w->counts.transformed += object->vertex_count;
-            mesh->screen = screen;
-        }
-        int32_t drawn = ew_draw_triangles(w->geometry, mesh);
-        if (drawn < 0) return (int)drawn;
-        w->counts.set_up += (uint32_t)drawn;
+        ew_transform_vertices(&object->transform, mesh->vertices, object->vertex_count, screen);
+        w->counts->transformed += object->vertex_count;
+        mesh->screen = screen;
     }
-    return EW_OK;
+    return 1;
 }
 
-/* Goes to a band and clears it; the scissor is what of the picture's lies in it. Returns whether
- * that is anything. */
-static EW_OWN_FRAME int start_band(ew_picture_work *w, uint32_t band, int32_t row, int32_t rows)
+/* Goes to the band at hand and clears it; the scissor is what of the picture's lies in it. Returns
+ * whether that is anything. */
+static EW_OWN_FRAME int start_band(ew_picture_work *w)
 {
     ew_raster *raster = w->geometry->raster;
     const ew_picture *p = w->picture;
-    uint8_t *colour = w->colour + (p->buffers > 1 && band & 1u ? w->colour_bytes : 0);
-    ew_raster_set_rows(raster, colour, w->depth, (uint16_t)row, (uint16_t)rows);
-    ew_rect rect = { 0, (uint16_t)row, p->width, (uint16_t)(row + rows) };
+    const int32_t row = p->first_row + (int32_t)(w->band * w->rows), left = p->end_row - row;
+    const int32_t end = (int32_t)w->rows < left ? row + (int32_t)w->rows : p->end_row;
+    uint8_t *colour = w->colour + (p->buffers > 1 && w->band & 1u ? w->colour_bytes : 0);
+    ew_raster_set_rows(raster, colour, w->depth, (uint16_t)row, (uint16_t)(end - row));
+    ew_rect rect = { 0, (uint16_t)row, p->width, (uint16_t)end };
     ew_raster_set_scissor(raster, &rect);
     ew_raster_clear(raster, p->background);
     w->top = row > w->first ? row : w->first;
-    w->bottom = row + rows < w->end ? row + rows : w->end;
+    w->bottom = end < w->end ? end : w->end;
     if (w->top >= w->bottom) return 0;
     rect.x0 = p->scissor.x0, rect.x1 = p->scissor.x1;
     rect.y0 = (uint16_t)w->top, rect.y1 = (uint16_t)w->bottom;
@@ -249,12 +253,12 @@ static EW_OWN_FRAME int start_band(ew_picture_work *w, uint32_t band, int32_t ro
     return 1;
 }
 
-static EW_OWN_FRAME int init_raster(const ew_picture_work *w, const memory_plan *plan)
+static EW_OWN_FRAME int init_raster(const ew_picture_work *w)
 {
     const ew_picture *p = w->picture;
     ew_raster *raster = w->geometry->raster;
-    const ew_target target = { .colour = w->colour, .depth = w->depth, .width = p->width, .height = (uint16_t)plan->rows,
-                               .stride = (uint16_t)plan->stride, .format = p->format, .dither = p->dither,
+    const ew_target target = { .colour = w->colour, .depth = w->depth, .width = p->width, .height = (uint16_t)w->rows,
+                               .stride = (uint16_t)w->stride, .format = p->format, .dither = p->dither,
                                .first_row = p->first_row };
     int error = ew_raster_init(raster, &target);
     if (!error && p->cost) error = ew_raster_set_cost(raster, p->cost);
@@ -263,25 +267,9 @@ static EW_OWN_FRAME int init_raster(const ew_picture_work *w, const memory_plan 
     return error;
 }
 
-static EW_OWN_FRAME int draw_bands(ew_picture_work *w, const memory_plan *plan)
-{
-    const ew_picture *p = w->picture;
-    if (plan->bands > 1) sort(w, plan);
-    int32_t row = p->first_row;
-    for (uint32_t band = 0; band < plan->bands; band++) {
-        const int32_t left = p->end_row - row, rows = (int32_t)plan->rows < left ? (int32_t)plan->rows : left;
-        if (start_band(w, band, row, rows)) {
-            const int error = plan->bands > 1 ? ew_draw_band(w, band) : draw_at_once(w);
-            if (error) return error;
-        }
-        p->band(p->user, &w->geometry->raster->target);
-        row += rows;
-    }
-    return EW_OK;
-}
-
-int ew_picture_draw(const ew_picture *picture, const ew_object *objects, uint32_t count, ew_geometry *geometry,
-                    void *memory, size_t bytes, ew_picture_counts *counts)
+/* Makes everything ready in the memory. Returns EW_OK or an error. */
+static EW_OWN_FRAME int prepare(const ew_picture *picture, const ew_object *objects, uint32_t count, ew_geometry *geometry,
+                                void *memory, size_t bytes)
 {
     memory_plan plan;
     if (!plan_init(&plan, picture, objects, count)) return EW_ERR_ARGUMENT;
@@ -290,11 +278,37 @@ int ew_picture_draw(const ew_picture *picture, const ew_object *objects, uint32_
     w->objects = objects;
     w->count = count;
     w->geometry = geometry;
+    w->object = w->band = 0;
     w->used = UINT32_MAX;
     w->first = picture->scissor.y0 > picture->first_row ? picture->scissor.y0 : picture->first_row;
     w->end = picture->scissor.y1 < picture->end_row ? picture->scissor.y1 : picture->end_row;
-    int error = init_raster(w, &plan);
-    if (!error) error = draw_bands(w, &plan);
-    if (counts) *counts = w->counts;
-    return error;
+    return init_raster(w);
+}
+
+/* One band after the other, in the caller's frame: below this lie the deepest calls. */
+static inline int draw(ew_picture_work *w)
+{
+    int error = EW_OK;
+    if (w->bands > 1) sort(w);
+    for (; w->band < w->bands && error >= 0; w->band++) {
+        if (start_band(w)) {
+            if (w->bands > 1) error = ew_draw_band(w);
+            else while (error >= 0 && next_mesh(w, &error)) error = (int)ew_draw_triangles(w->geometry, &w->geometry->scene.mesh);
+        }
+        if (error >= 0) w->picture->band(w->picture->user, &w->geometry->raster->target);
+    }
+    return error < 0 ? error : EW_OK;
+}
+
+int ew_picture_draw(const ew_picture *picture, const ew_object *objects, uint32_t count, ew_geometry *geometry,
+                    void *memory, size_t bytes, ew_picture_counts *counts)
+{
+    const int error = prepare(picture, objects, count, geometry, memory, bytes);
+    if (error) return error;
+    ew_picture_work *w = work_in(memory);
+    if (counts) {
+        *counts = w->own_counts; /* zeros */
+        w->counts = counts;
+    }
+    return draw(w);
 }

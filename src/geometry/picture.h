@@ -44,7 +44,9 @@ typedef struct ew_picture_work {
     const ew_object *objects;
     uint32_t count;
     ew_geometry *geometry;
-    ew_picture_counts counts;
+    ew_picture_counts *counts, own_counts;
+    uint32_t rows, bands, stride;
+    uint32_t band;        /* the one at hand                                                */
     int32_t first, end;   /* rows that triangles are drawn in                               */
     int32_t top, bottom;  /* rows of the band at hand among them                            */
     /* Memory. */
@@ -59,9 +61,13 @@ typedef struct ew_picture_work {
     /* Lists. */
     ew_place kept, gaps;
     uint32_t late, next;  /* next: of those that begin, with its band                       */
+    ew_place *kept_link;  /* what leads to the ones that a band has come to                 */
+    uint32_t *late_link;
     uint32_t active;      /* how many stand in kept and late                                */
     /* The object at hand, by number, and the one whose material the raster has. */
     uint32_t object, first_triangle, first_vertex, used;
+    const ew_object *at;
+    uint32_t number;      /* the triangle at hand, its corners in `screen`                  */
     ew_screen_vertex screen[EW_BATCH];
 } ew_picture_work;
 
@@ -77,7 +83,7 @@ static inline int32_t ew_row_of(ew_q20_12 y)
 /* Makes all places one gap. */
 void ew_places_init(ew_picture_work *w, size_t bytes);
 
-/* Draws what lies in the band at hand, whose number is `band`. Returns EW_OK or an error. */
-int ew_draw_band(ew_picture_work *w, uint32_t band);
+/* Draws what lies in the band at hand. Returns EW_OK or an error. */
+int ew_draw_band(ew_picture_work *w);
 
 #endif

@@ -76,18 +76,12 @@ static inline void ew_corner_from(ew_raster_vertex *out, const ew_vertex16 *vert
     out->v = vertex->v * uv_unit;
 }
 
-/* Clips a triangle of a mesh of g->transform; `screen` are its three vertices after the
- * transform. Leaves the polygon in g->clipped and returns the number of its corners, below 3 when
- * nothing is left. */
-int ew_clip_triangle(ew_geometry *g, const ew_mesh *mesh, const uint16_t index[3],
-                     const ew_screen_vertex *const screen[3]);
+/* Clips a triangle of a mesh of g->transform; g->clip_screen are its vertices after the transform,
+ * and have to stay. What is left is a fan of triangles. */
+void ew_clip_triangle(ew_geometry *g, const ew_mesh *mesh, const uint16_t index[3]);
 
-/* Corner i of the clipped polygon to its place in the fan: g->corner. From i = 2 on each call makes a
- * triangle. */
-void ew_clip_corner(ew_geometry *g, int i, const ew_screen_vertex *const screen[3]);
-
-/* Clips and draws the triangle of three vertices. Returns 1 or 0 as ew_raster_triangle, or its
- * error. */
-int ew_draw_clipped(ew_geometry *geometry, const ew_mesh *mesh, const uint16_t index[3]);
+/* Leaves the next triangle of the fan in g->corner and returns 1, or 0 behind the last. With
+ * g->clipped_next set to 0 it begins anew. */
+int ew_clip_next(ew_geometry *g);
 
 #endif
