@@ -10,7 +10,7 @@ static ew_kept *kept_at(const ew_picture_work *w, ew_place place)
     return (ew_kept *)(void *)(w->places + (size_t)place * PLACE_BYTES);
 }
 
-void ew_places_init(ew_picture_work *w, size_t bytes)
+static void init_places(ew_picture_work *w, size_t bytes)
 {
     const size_t places = bytes / PLACE_BYTES < EW_NO_PLACE ? bytes / PLACE_BYTES : EW_NO_PLACE - 1u;
     w->kept = w->gaps = EW_NO_PLACE;
@@ -18,6 +18,24 @@ void ew_places_init(ew_picture_work *w, size_t bytes)
     w->gaps = 0;
     kept_at(w, 0)->gap.places = (uint16_t)places;
     kept_at(w, 0)->gap.next = EW_NO_PLACE;
+}
+
+void ew_active_init(ew_picture_work *w)
+{
+    enum { SHARE = 8 }; /* of it for vertices: a slot of 16 bytes for each triangle of 112 */
+    uint8_t *at = (uint8_t *)(w->entries + (w->entry_count + 1u) / 2u * 2u); /* aligned to 8 */
+    const size_t rest = (size_t)(w->end_of_memory - at);
+    w->slots = (ew_slot *)(void *)at;
+    w->slot_count = w->vertices;
+    if (w->slot_count > rest / SHARE / sizeof *w->slots) w->slot_count = (uint32_t)(rest / SHARE / sizeof *w->slots);
+    if (w->slot_count > UINT16_MAX) w->slot_count = UINT16_MAX;
+    w->hand = 0;
+    for (uint32_t i = 0; i < w->slot_count; i++) {
+        w->slots[i].y = -EW_GUARD_PX * 4096; /* above everything */
+        w->slots[i].tag = UINT32_MAX;
+    }
+    w->places = (uint8_t *)(w->slots + w->slot_count);
+    init_places(w, (size_t)(w->end_of_memory - w->places));
 }
 
 /* The first gap that is large enough gives its end. */
@@ -98,10 +116,9 @@ static void take_slot(ew_picture_work *w, uint32_t number, const ew_screen_verte
         ew_slot *slot = &w->slots[w->hand];
         /* no triangle begins below its own vertices */
         if (ew_row_of(slot->y) >= w->top) continue;
-        slot->w = v->w, slot->x = v->x;
+        ew_slot_put(slot, number, v);
         /* those of vertices without a place begin in the first band there is */
-        slot->y = v->outcode & (EW_OUT_NEAR | EW_OUT_GUARD) ? w->top * 4096 : v->y;
-        slot->tag = number << 8 | v->outcode;
+        if (v->outcode & (EW_OUT_NEAR | EW_OUT_GUARD)) slot->y = w->top * 4096;
         w->map[number] = (uint16_t)w->hand;
         return;
     }
@@ -120,9 +137,7 @@ static EW_OWN_FRAME void fetch(ew_picture_work *w, int k)
     const uint32_t number = w->first_vertex + vertex;
     const uint16_t at = w->map[number];
     if (at < w->slot_count && w->slots[at].tag >> 8 == number) {
-        const ew_slot *slot = &w->slots[at];
-        out->w = slot->w, out->x = slot->x, out->y = slot->y;
-        out->outcode = (uint8_t)slot->tag;
+        ew_slot_get(out, &w->slots[at]);
         return;
     }
     ew_transform_vertices(&object->transform, &object->mesh.vertices[vertex], 1, out);
@@ -206,9 +221,8 @@ static EW_OWN_FRAME int start(ew_picture_work *w)
     const ew_mesh *mesh = &object->mesh;
     const uint16_t *index = mesh->indices + (size_t)(w->number - w->first_triangle) * 3u;
     const ew_screen_vertex *const s = w->screen;
-    const int any = s[0].outcode | s[1].outcode | s[2].outcode, all = s[0].outcode & s[1].outcode & s[2].outcode;
-    if (any & (EW_OUT_NEAR | EW_OUT_GUARD)) return all & ~EW_OUT_GUARD ? DONE : clipped(w, index);
-    if (all || (!(object->material.flags & EW_DOUBLE_SIDED) && !ew_faces_the_eye(&s[0], &s[1], &s[2]))) return DONE;
+    if (ew_is_hidden(s, object->material.flags & EW_DOUBLE_SIDED)) return DONE;
+    if ((s[0].outcode | s[1].outcode | s[2].outcode) & (EW_OUT_NEAR | EW_OUT_GUARD)) return clipped(w, index);
 
     const int32_t uv_unit = (int32_t)1 << (12 - mesh->uv_fraction_bits);
     ew_raster_vertex *const v = w->geometry->corner;
@@ -230,26 +244,52 @@ static uint32_t number_at(const ew_picture_work *w, ew_place link)
     return link == EW_NO_PLACE ? EW_NO_TRIANGLE : kept_at(w, link)->active.number;
 }
 
+/* That of the next triangle that begins in the band. */
+static uint32_t number_of_next(const ew_picture_work *w)
+{
+    if (w->next == w->entry_count) return EW_NO_TRIANGLE;
+    const uint32_t entry = w->entries[w->next];
+    return entry >> EW_NUMBER_BITS == w->band ? entry & EW_NUMBER_MASK : EW_NO_TRIANGLE;
+}
+
 /* Takes a late triangle, or else the next to begin, out of its list. */
 static EW_OWN_FRAME int take(ew_picture_work *w, uint32_t number, int is_late)
 {
     if (is_late) {
-        *w->late_link = w->link[number];
+        w->late_next++;
         w->active--;
         w->counts->again++;
     } else {
-        w->next = w->link[number];
+        w->next++;
     }
     return go_to(w, number);
 }
 
-static void put_late(ew_picture_work *w)
+/* The triangle at hand is late, behind those that are already: there is room where it came from. */
+static void put_late(ew_picture_work *w, int is_late)
 {
-    uint32_t *link = &w->link[w->number];
-    *link = *w->late_link;
-    *w->late_link = w->number;
-    w->late_link = link;
+    if (is_late) w->entries[w->late_left++] = w->number;
+    else w->entries[w->late_begun + w->late_new++] = w->number;
     w->active++;
+}
+
+static void start_late(ew_picture_work *w)
+{
+    w->late_next = w->late_left = w->late_new = 0;
+    w->late_begun = w->next;
+}
+
+/* Those that the band has added, among the others, by number. */
+static void merge_late(ew_picture_work *w)
+{
+    uint32_t *entries = w->entries;
+    w->late_count = w->late_left;
+    for (uint32_t i = 0; i < w->late_new; i++) {
+        const uint32_t number = entries[w->late_begun + i];
+        uint32_t at = w->late_count++;
+        for (; at > 0 && entries[at - 1u] > number; at--) entries[at] = entries[at - 1u];
+        entries[at] = number;
+    }
 }
 
 /* Makes the next triangle ready to be drawn: returns it where it was kept, else says in *result
@@ -257,8 +297,9 @@ static void put_late(ew_picture_work *w)
 static EW_OWN_FRAME ew_active *next_triangle(ew_picture_work *w, int *result)
 {
     for (;;) {
-        const uint32_t k = number_at(w, *w->kept_link), l = *w->late_link;
-        const uint32_t s = w->next >> EW_NUMBER_BITS == w->band ? w->next & EW_NUMBER_MASK : EW_NO_TRIANGLE;
+        const uint32_t k = number_at(w, *w->kept_link);
+        const uint32_t l = w->late_next < w->late_count ? w->entries[w->late_next] : EW_NO_TRIANGLE;
+        const uint32_t s = number_of_next(w);
         if (k <= l && k <= s) {
             *result = k == EW_NO_TRIANGLE ? BAND_DONE : go_to(w, k);
             return *result ? NULL : &kept_at(w, *w->kept_link)->active;
@@ -267,7 +308,7 @@ static EW_OWN_FRAME ew_active *next_triangle(ew_picture_work *w, int *result)
         if (*result < 0) return NULL;
         for (int i = 0; i < 3; i++) fetch(w, i);
         *result = start(w);
-        if (*result >= DRAW_LATE) put_late(w);
+        if (*result >= DRAW_LATE) put_late(w, l < s);
         if (*result < 0 || *result >= DRAW) return NULL;
         /* what was kept is drawn next: it stands at *kept_link */
     }
@@ -277,7 +318,7 @@ int ew_draw_band(ew_picture_work *w)
 {
     int result;
     w->kept_link = &w->kept;
-    w->late_link = &w->late;
+    start_late(w);
     w->object = w->first_triangle = w->first_vertex = 0;
     do {
         ew_active *active = next_triangle(w, &result);
@@ -291,6 +332,7 @@ int ew_draw_band(ew_picture_work *w)
             ew_raster_draw_begun(w->geometry->raster);
         }
     } while (result >= 0 && result != BAND_DONE);
+    merge_late(w);
     if (w->active > w->counts->most_active) w->counts->most_active = w->active;
     return result < 0 ? result : EW_OK;
 }

@@ -12,7 +12,6 @@ typedef struct memory_plan {
     uint32_t triangles, vertices;  /* to be linked and mapped, 0 where there is one band       */
     uint32_t screen;               /* vertices to be kept while an object is drawn, likewise    */
     uint32_t colour, depth;        /* bytes of a band                                         */
-    uint32_t bands_bytes;          /* of all buffers and depth, in which the lists' heads fit   */
     uint32_t least;                /* with what alignment may take; below 2^28                 */
 } memory_plan;
 
@@ -59,9 +58,7 @@ static int plan_init(memory_plan *plan, const ew_picture *picture, const ew_obje
     const uint32_t pixels = plan->stride * plan->rows; /* <= 2^24 */
     plan->colour = aligned((pixels << bits) / 8u);
     plan->depth = picture->visibility == EW_DEPTH_BUFFER ? aligned(pixels * 2u) : 0;
-    plan->bands_bytes = plan->colour * picture->buffers + plan->depth;
-    if (plan->bands > 1 && plan->bands_bytes < plan->bands * 4u) plan->bands_bytes = aligned(plan->bands * 4u);
-    plan->least = ALIGNMENT - 1u + aligned(sizeof(ew_picture_work)) + plan->bands_bytes +
+    plan->least = ALIGNMENT - 1u + aligned(sizeof(ew_picture_work)) + plan->colour * picture->buffers + plan->depth +
                   aligned(plan->screen * (uint32_t)sizeof(ew_screen_vertex)) + aligned(plan->triangles * 4u) +
                   aligned(plan->vertices * 2u);
     return sizeof(size_t) > 2 || plan->least <= UINT16_MAX;
@@ -97,38 +94,31 @@ static ew_picture_work *work_init(const memory_plan *plan, const ew_picture *pic
     w->rows = plan->rows, w->bands = plan->bands, w->stride = plan->stride;
     w->colour = at;
     w->colour_bytes = plan->colour;
-    w->depth = plan->depth ? (uint16_t *)(void *)(at + plan->colour * picture->buffers) : NULL;
-    at += plan->bands_bytes;
-    w->slots = (ew_slot *)(void *)at; /* or the vertices of an object, where there is one band */
+    at += plan->colour * picture->buffers;
+    w->depth = plan->depth ? (uint16_t *)(void *)at : NULL;
+    at += plan->depth;
+    w->slots = (ew_slot *)(void *)at; /* the vertices of an object, where there is one band */
     at += aligned(plan->screen * (uint32_t)sizeof(ew_screen_vertex));
-    w->link = (uint32_t *)(void *)at;
-    at += aligned(plan->triangles * 4u);
     w->map = (uint16_t *)(void *)at;
+    w->vertices = plan->vertices;
     at += aligned(plan->vertices * 2u);
-    const size_t rest = (size_t)(end - at);
+    w->entries = (uint32_t *)(void *)at;
+    w->rest = at + aligned(plan->triangles * 4u);
+    w->end_of_memory = end;
     const ew_picture_counts none = { 0, 0, 0, 0 };
     w->own_counts = none;
     w->counts = &w->own_counts;
-    w->slot_count = w->hand = 0;
-    w->late = w->next = EW_NO_TRIANGLE;
-    w->active = 0;
-    if (plan->bands > 1) {
-        w->slots = (ew_slot *)(void *)at;
-        w->slot_count = plan->vertices;
-        if (w->slot_count > rest / 8u / sizeof *w->slots) w->slot_count = (uint32_t)(rest / 8u / sizeof *w->slots);
-        if (w->slot_count > UINT16_MAX) w->slot_count = UINT16_MAX;
-        w->places = at + w->slot_count * sizeof *w->slots;
-        ew_places_init(w, (size_t)(end - w->places));
-    }
+    w->entry_count = w->next = w->late_count = w->active = 0;
     return w;
 }
 
 /* ---- sorting ---- */
 
 /* What the map has of a vertex while triangles are sorted: the row that it may begin, within those
- * that are drawn, or that it has none. */
+ * that are drawn; that it has none; or nothing yet. */
 #define NEAR UINT16_C(0xFFFF)
 #define UNKNOWN UINT16_C(0xFFFE)
+#define NOT_YET UINT16_C(0xFFFD)
 
 static uint16_t row_in_map(const ew_picture_work *w, const ew_screen_vertex *v)
 {
@@ -138,15 +128,52 @@ static uint16_t row_in_map(const ew_picture_work *w, const ew_screen_vertex *v)
     return (uint16_t)(row < w->first ? w->first : row > w->end ? w->end : row);
 }
 
-static EW_OWN_FRAME void map_vertices(ew_picture_work *w, const ew_object *object)
+/* The memory that triangles will be kept in holds vertices while they are sorted, each in the one
+ * slot that its number leads to. */
+static void init_sorting(ew_picture_work *w)
 {
-    uint16_t *map = w->map + w->first_vertex;
-    for (uint32_t i = 0; i < object->vertex_count; i += EW_BATCH) {
-        const uint32_t left = object->vertex_count - i, n = left < EW_BATCH ? left : EW_BATCH;
-        ew_transform_vertices(&object->transform, &object->mesh.vertices[i], n, w->screen);
-        for (uint32_t k = 0; k < n; k++) map[i + k] = row_in_map(w, &w->screen[k]);
+    uint32_t slots = (uint32_t)((size_t)(w->end_of_memory - w->rest) / sizeof *w->slots);
+    while (slots & (slots - 1u)) slots &= slots - 1u;
+    w->slots = (ew_slot *)(void *)w->rest;
+    w->slot_count = slots;
+    for (uint32_t i = 0; i < slots; i++) w->slots[i].tag = UINT32_MAX;
+    for (uint32_t i = 0; i < w->vertices; i++) w->map[i] = NOT_YET;
+}
+
+static ew_slot *slot_of(const ew_picture_work *w, uint32_t number)
+{
+    return w->slot_count ? &w->slots[number & (w->slot_count - 1u)] : NULL;
+}
+
+enum { KNOWN, FORGOTTEN, NEW }; /* a vertex: in w->screen; only its row is known; not transformed yet */
+
+/* Corner k of a triangle, and its row. */
+static EW_OWN_FRAME int look_up(ew_picture_work *w, const ew_object *object, int k, uint16_t vertex, uint16_t *row)
+{
+    if (object->mesh.screen) {
+        w->screen[k] = object->mesh.screen[vertex];
+        *row = row_in_map(w, &w->screen[k]);
+        return KNOWN;
     }
-    w->counts->transformed += object->vertex_count;
+    const uint32_t number = w->first_vertex + vertex;
+    const ew_slot *slot = slot_of(w, number);
+    *row = w->map[number];
+    if (*row == NOT_YET) return NEW;
+    if (!slot || slot->tag >> 8 != number) return FORGOTTEN;
+    ew_slot_get(&w->screen[k], slot);
+    return KNOWN;
+}
+
+/* Remembers the vertex in w->screen[k], and returns its row. */
+static EW_OWN_FRAME uint16_t remember(ew_picture_work *w, int k, uint16_t vertex)
+{
+    const uint32_t number = w->first_vertex + vertex;
+    ew_slot *slot = slot_of(w, number);
+    const uint16_t row = row_in_map(w, &w->screen[k]);
+    if (slot) ew_slot_put(slot, number, &w->screen[k]);
+    w->map[number] = row;
+    w->counts->transformed++;
+    return row;
 }
 
 /* The row that a triangle begins in, or w->end when it covers no row. */
@@ -162,51 +189,57 @@ static int32_t first_row_of(const ew_picture_work *w, const uint16_t row[3])
     return low < high ? low : w->end;
 }
 
-/* Puts an object's triangles before those of their bands. */
-static EW_OWN_FRAME void sort_object(ew_picture_work *w, const ew_object *object, uint32_t *heads)
+/* Appends an object's triangles that may be seen. */
+static EW_OWN_FRAME void list_object(ew_picture_work *w, const ew_object *object)
 {
     const uint16_t *index = object->mesh.indices;
-    const uint16_t *map = w->map + w->first_vertex;
+    const int both_sides = object->material.flags & EW_DOUBLE_SIDED;
     for (uint32_t i = 0; i < object->mesh.index_count; i += 3, index += 3) {
         uint16_t row[3];
+        int known = 1;
         for (int k = 0; k < 3; k++) {
-            row[k] = object->mesh.screen ? row_in_map(w, &object->mesh.screen[index[k]]) : map[index[k]];
+            const int what = look_up(w, object, k, index[k], &row[k]);
+            if (what == FORGOTTEN) known = 0;
+            if (what != NEW) continue;
+            ew_transform_vertices(&object->transform, &object->mesh.vertices[index[k]], 1, &w->screen[k]);
+            row[k] = remember(w, k, index[k]);
         }
         const int32_t first = first_row_of(w, row);
-        if (first >= w->end) continue;
-        const uint32_t below = (uint32_t)(first - w->picture->first_row), number = w->first_triangle + i / 3u;
-        uint32_t *head = &heads[w->rows == 1 ? below : below / w->rows];
-        w->link[number] = *head;
-        *head = number;
+        if (first >= w->end || (known && ew_is_hidden(w->screen, both_sides))) continue;
+        const uint32_t below = (uint32_t)(first - w->picture->first_row);
+        const uint32_t band = w->rows == 1 ? below : below / w->rows;
+        w->entries[w->entry_count++] = (w->first_triangle + i / 3u) | band << EW_NUMBER_BITS;
     }
 }
 
-/* Leaves the sorted list in w->next. The heads of the bands' lists lie where bands will be. */
+/* D. L. Shell, "A high-speed sorting procedure", 1959; steps by D. E. Knuth: (3^k - 1) / 2. */
+static void sort_entries(uint32_t *entries, uint32_t count)
+{
+    uint32_t step = 1;
+    while (step < count / 3u) step = 3u * step + 1u;
+    for (; step > 0; step /= 3u) {
+        for (uint32_t i = step; i < count; i++) {
+            const uint32_t entry = entries[i];
+            uint32_t at = i;
+            for (; at >= step && entries[at - step] > entry; at -= step) entries[at] = entries[at - step];
+            entries[at] = entry;
+        }
+    }
+}
+
+/* Makes the list of triangles, and of what memory is left room for vertices and for kept ones. */
 static EW_OWN_FRAME void sort(ew_picture_work *w)
 {
-    uint32_t *heads = (uint32_t *)(void *)w->colour;
-    for (uint32_t i = 0; i < w->bands; i++) heads[i] = EW_NO_TRIANGLE;
+    init_sorting(w);
     w->first_triangle = w->first_vertex = 0;
     for (uint32_t i = 0; i < w->count; i++) {
         const ew_object *object = &w->objects[i];
-        if (!object->mesh.screen) map_vertices(w, object);
-        sort_object(w, object, heads);
+        list_object(w, object);
         w->first_triangle += object->mesh.index_count / 3u;
         if (!object->mesh.screen) w->first_vertex += object->vertex_count;
     }
-    /* the last come first there: taken from the last band on, they come out in order */
-    w->next = UINT32_MAX;
-    for (uint32_t band = w->bands; band-- > 0;) {
-        for (uint32_t number = heads[band], behind; number != EW_NO_TRIANGLE; number = behind) {
-            behind = w->link[number];
-            w->link[number] = w->next;
-            w->next = number | band << EW_NUMBER_BITS;
-        }
-    }
-    for (uint32_t i = 0; i < w->slot_count; i++) {
-        w->slots[i].y = -EW_GUARD_PX * 4096; /* above everything */
-        w->slots[i].tag = UINT32_MAX;
-    }
+    sort_entries(w->entries, w->entry_count);
+    ew_active_init(w);
 }
 
 /* ---- drawing ---- */

@@ -1,10 +1,10 @@
 /* A picture while it is drawn (private to the geometry layer).
  *
- * All visible triangles stand in a list sorted by the band that they begin in, then by number:
- * their place in the order of drawing. A band draws, by number, those that begin in it and those
- * that reach into it. Of the latter some were kept (active.c): set up, ready to go on. Those that
- * found no room are late: set up again for each band. Merging three lists by number is what makes
- * the picture independent of bands.
+ * All triangles that may be seen stand in a list sorted by the band that they begin in, then by
+ * number: their place in the order of drawing. A band draws, by number, those that begin in it and
+ * those that reach into it. Of the latter some were kept (active.c): set up, ready to go on. Those
+ * that found no room are late: set up again for each band. Merging the three by number is what
+ * makes the picture independent of bands.
  */
 #ifndef EW_GEOMETRY_PICTURE_H
 #define EW_GEOMETRY_PICTURE_H
@@ -12,7 +12,7 @@
 #include "edgewalk/picture.h"
 #include "project.h"
 
-/* Links between triangles: the number of the next, and above it the band that it begins in. */
+/* Entries of the list: a triangle's number, and above it the band that it begins in. */
 enum { EW_NUMBER_BITS = 20 };
 #define EW_NUMBER_MASK ((UINT32_C(1) << EW_NUMBER_BITS) - 1u)
 #define EW_NO_TRIANGLE EW_NUMBER_MASK
@@ -37,8 +37,6 @@ typedef struct ew_slot {
     uint32_t tag; /* the vertex's number times 2^8, and its outcode                          */
 } ew_slot;
 
-enum { EW_BATCH = 8 };
-
 typedef struct ew_picture_work {
     const ew_picture *picture;
     const ew_object *objects;
@@ -53,22 +51,26 @@ typedef struct ew_picture_work {
     uint8_t *colour;
     uint16_t *depth;
     uint32_t colour_bytes; /* of one band                                                    */
-    uint32_t *link;       /* one for each triangle                                          */
     uint16_t *map;        /* one for each vertex: its row, then the slot that may have it   */
+    uint32_t vertices;
+    uint32_t *entries;
+    uint8_t *rest, *end_of_memory; /* what lies behind all of this                            */
     ew_slot *slots;
     uint32_t slot_count, hand; /* hand: where a slot was taken last                         */
     uint8_t *places;      /* multiples of 8 bytes                                           */
-    /* Lists. */
+    /* Lists. Late ones stand in the entries' place once these were taken: those of earlier bands
+     * first, then, from late_begun on, those that the band at hand has added. */
+    uint32_t entry_count, next;
+    uint32_t late_count, late_next, late_left; /* of earlier bands: read up to, left so far      */
+    uint32_t late_begun, late_new;
     ew_place kept, gaps;
-    uint32_t late, next;  /* next: of those that begin, with its band                       */
-    ew_place *kept_link;  /* what leads to the ones that a band has come to                 */
-    uint32_t *late_link;
-    uint32_t active;      /* how many stand in kept and late                                */
+    ew_place *kept_link;  /* what leads to the one that a band has come to                  */
+    uint32_t active;      /* how many are kept or late                                      */
     /* The object at hand, by number, and the one whose material the raster has. */
     uint32_t object, first_triangle, first_vertex, used;
     const ew_object *at;
     uint32_t number;      /* the triangle at hand, its corners in `screen`                  */
-    ew_screen_vertex screen[EW_BATCH];
+    ew_screen_vertex screen[3];
 } ew_picture_work;
 
 /* The first row whose centre is at or below y: where a triangle may begin. */
@@ -78,10 +80,29 @@ static inline int32_t ew_row_of(ew_q20_12 y)
     return EW_ASR(ew_snapped_from_q20_12(y) + half - 1, EW_SUBPIXEL_BITS);
 }
 
+static inline void ew_slot_put(ew_slot *slot, uint32_t number, const ew_screen_vertex *v)
+{
+    slot->w = v->w, slot->x = v->x, slot->y = v->y;
+    slot->tag = number << 8 | v->outcode;
+}
+static inline void ew_slot_get(ew_screen_vertex *v, const ew_slot *slot)
+{
+    v->w = slot->w, v->x = slot->x, v->y = slot->y;
+    v->outcode = (uint8_t)slot->tag;
+}
+
+/* Whether nothing of the triangle of three vertices can be seen. */
+static inline int ew_is_hidden(const ew_screen_vertex s[3], int both_sides)
+{
+    const int any = s[0].outcode | s[1].outcode | s[2].outcode, all = s[0].outcode & s[1].outcode & s[2].outcode;
+    if (any & (EW_OUT_NEAR | EW_OUT_GUARD)) return all & ~EW_OUT_GUARD;
+    return all || (!both_sides && !ew_faces_the_eye(&s[0], &s[1], &s[2]));
+}
+
 /* ---- active.c ---- */
 
-/* Makes all places one gap. */
-void ew_places_init(ew_picture_work *w, size_t bytes);
+/* Divides what memory the list leaves. */
+void ew_active_init(ew_picture_work *w);
 
 /* Draws what lies in the band at hand. Returns EW_OK or an error. */
 int ew_draw_band(ew_picture_work *w);
