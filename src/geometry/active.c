@@ -22,7 +22,7 @@ static void init_places(ew_picture_work *w, size_t bytes)
 
 void ew_active_init(ew_picture_work *w)
 {
-    enum { SHARE = 8 }; /* of it for vertices: a slot of 16 bytes for each triangle of 112 */
+    enum { SHARE = 8 }; /* of it for vertices: most of a slot for each triangle of 112 bytes */
     uint8_t *at = (uint8_t *)(w->entries + (w->entry_count + 1u) / 2u * 2u); /* aligned to 8 */
     const size_t rest = (size_t)(w->end_of_memory - at);
     w->slots = (ew_slot *)(void *)at;
@@ -31,10 +31,10 @@ void ew_active_init(ew_picture_work *w)
     if (w->slot_count > UINT16_MAX) w->slot_count = UINT16_MAX;
     w->hand = 0;
     for (uint32_t i = 0; i < w->slot_count; i++) {
-        w->slots[i].y = -EW_GUARD_PX * 4096; /* above everything */
-        w->slots[i].tag = UINT32_MAX;
+        w->slots[i].vertex.y = -EW_GUARD_PX * 4096; /* above everything */
+        w->slots[i].number = EW_NO_VERTEX;
     }
-    w->places = (uint8_t *)(w->slots + w->slot_count);
+    w->places = (uint8_t *)(w->slots + (w->slot_count + 1u) / 2u * 2u);
     init_places(w, (size_t)(w->end_of_memory - w->places));
 }
 
@@ -115,10 +115,11 @@ static void take_slot(ew_picture_work *w, uint32_t number, const ew_screen_verte
         if (++w->hand >= w->slot_count) w->hand = 0;
         ew_slot *slot = &w->slots[w->hand];
         /* no triangle begins below its own vertices */
-        if (ew_row_of(slot->y) >= w->top) continue;
-        ew_slot_put(slot, number, v);
+        if (ew_row_of(slot->vertex.y) >= w->top) continue;
+        slot->vertex = *v;
+        slot->number = number;
         /* those of vertices without a place begin in the first band there is */
-        if (v->outcode & (EW_OUT_NEAR | EW_OUT_GUARD)) slot->y = w->top * 4096;
+        if (v->outcode & (EW_OUT_NEAR | EW_OUT_GUARD)) slot->vertex.y = w->top * 4096;
         w->map[number] = (uint16_t)w->hand;
         return;
     }
@@ -136,8 +137,8 @@ static EW_OWN_FRAME void fetch(ew_picture_work *w, int k)
     }
     const uint32_t number = w->first_vertex + vertex;
     const uint16_t at = w->map[number];
-    if (at < w->slot_count && w->slots[at].tag >> 8 == number) {
-        ew_slot_get(out, &w->slots[at]);
+    if (at < w->slot_count && w->slots[at].number == number) {
+        *out = w->slots[at].vertex;
         return;
     }
     ew_transform_vertices(&object->transform, &object->mesh.vertices[vertex], 1, out);
@@ -149,25 +150,26 @@ static EW_OWN_FRAME void fetch(ew_picture_work *w, int k)
 
 /* Makes a triangle and its object the ones at hand: numbers grow within a band. Returns EW_OK or an
  * error of the raster's. */
-static int go_to(ew_picture_work *w, uint32_t number)
+static EW_OWN_FRAME int go_to(ew_picture_work *w, uint32_t number)
 {
     const ew_object *object = &w->objects[w->object];
-    w->number = number;
     while (number - w->first_triangle >= object->mesh.index_count / 3u) {
         w->first_triangle += object->mesh.index_count / 3u;
         if (!object->mesh.screen) w->first_vertex += object->vertex_count;
         object = &w->objects[++w->object];
     }
+    w->number = number;
     w->at = object;
+    w->behind = w->first_triangle + object->mesh.index_count / 3u;
     if (w->used == w->object) return EW_OK;
     w->used = w->object;
     return ew_raster_set_material(w->geometry->raster, &object->material);
 }
 
-/* What becomes of a triangle in the band at hand: there is nothing to be drawn; it is kept; there is none
- * any more; what the raster has set up is to be drawn, and that was all or the rest is late; the
+/* What becomes of a triangle in the band at hand: there is nothing to be drawn; it is kept, to be drawn next;
+ * what the raster has set up is to be drawn, and that was all or the rest is late; the
  * triangles of a fan are to be drawn, one after the other, and are late, too. */
-enum { DONE, KEPT, BAND_DONE, DRAW, DRAW_LATE, DRAW_FAN };
+enum { DONE, KEPT, DRAW, DRAW_LATE, DRAW_FAN };
 
 static int begin(ew_picture_work *w)
 {
@@ -221,7 +223,7 @@ static EW_OWN_FRAME int start(ew_picture_work *w)
     const ew_mesh *mesh = &object->mesh;
     const uint16_t *index = mesh->indices + (size_t)(w->number - w->first_triangle) * 3u;
     const ew_screen_vertex *const s = w->screen;
-    if (ew_is_hidden(s, object->material.flags & EW_DOUBLE_SIDED)) return DONE;
+    if (ew_is_hidden(&s[0], &s[1], &s[2], object->material.flags & EW_DOUBLE_SIDED)) return DONE;
     if ((s[0].outcode | s[1].outcode | s[2].outcode) & (EW_OUT_NEAR | EW_OUT_GUARD)) return clipped(w, index);
 
     const int32_t uv_unit = (int32_t)1 << (12 - mesh->uv_fraction_bits);
@@ -238,10 +240,10 @@ static EW_OWN_FRAME int start(ew_picture_work *w)
 
 /* ---- a band ---- */
 
-/* The number of the triangle that *link leads to. */
-static uint32_t number_at(const ew_picture_work *w, ew_place link)
+/* The number of the next late triangle. */
+static uint32_t number_of_late(const ew_picture_work *w)
 {
-    return link == EW_NO_PLACE ? EW_NO_TRIANGLE : kept_at(w, link)->active.number;
+    return w->late_next < w->late_count ? w->entries[w->late_next] : EW_NO_TRIANGLE;
 }
 
 /* That of the next triangle that begins in the band. */
@@ -292,46 +294,54 @@ static void merge_late(ew_picture_work *w)
     }
 }
 
-/* Makes the next triangle ready to be drawn: returns it where it was kept, else says in *result
- * what is to be done, or an error. */
-static EW_OWN_FRAME ew_active *next_triangle(ew_picture_work *w, int *result)
+/* Draws what was kept of triangles before `number`. Returns EW_OK or an error. */
+static EW_OWN_FRAME int draw_kept(ew_picture_work *w, uint32_t number)
 {
-    for (;;) {
-        const uint32_t k = number_at(w, *w->kept_link);
-        const uint32_t l = w->late_next < w->late_count ? w->entries[w->late_next] : EW_NO_TRIANGLE;
-        const uint32_t s = number_of_next(w);
-        if (k <= l && k <= s) {
-            *result = k == EW_NO_TRIANGLE ? BAND_DONE : go_to(w, k);
-            return *result ? NULL : &kept_at(w, *w->kept_link)->active;
+    ew_place *link = w->kept_link;
+    ew_raster *raster = w->geometry->raster;
+    while (*link != EW_NO_PLACE) {
+        ew_active *active = &kept_at(w, *link)->active;
+        if (active->number >= number) break;
+        if (active->number >= w->behind) {
+            const int error = go_to(w, active->number);
+            if (error) return error;
         }
-        *result = take(w, l < s ? l : s, l < s);
-        if (*result < 0) return NULL;
-        for (int i = 0; i < 3; i++) fetch(w, i);
-        *result = start(w);
-        if (*result >= DRAW_LATE) put_late(w, l < s);
-        if (*result < 0 || *result >= DRAW) return NULL;
-        /* what was kept is drawn next: it stands at *kept_link */
+        ew_raster_draw_active(raster, active);
+        if (active->row < active->end) link = &active->next;
+        else drop(w, link);
     }
+    w->kept_link = link;
+    return EW_OK;
+}
+
+/* Starts the next triangle before which no kept one comes, `number`. */
+static EW_OWN_FRAME int start_next(ew_picture_work *w, uint32_t number, int is_late)
+{
+    const int error = take(w, number, is_late);
+    if (error) return error;
+    for (int i = 0; i < 3; i++) fetch(w, i);
+    const int result = start(w);
+    if (result >= DRAW_LATE) put_late(w, is_late);
+    return result;
 }
 
 int ew_draw_band(ew_picture_work *w)
 {
-    int result;
+    int result = EW_OK;
     w->kept_link = &w->kept;
     start_late(w);
-    w->object = w->first_triangle = w->first_vertex = 0;
-    do {
-        ew_active *active = next_triangle(w, &result);
-        if (active) {
-            ew_raster_draw_active(w->geometry->raster, active);
-            if (active->row < active->end) w->kept_link = &active->next;
-            else drop(w, w->kept_link);
-        } else if (result == DRAW_FAN) {
+    w->object = w->first_triangle = w->first_vertex = w->behind = 0;
+    while (result >= 0) {
+        const uint32_t late = number_of_late(w), next = number_of_next(w), number = late < next ? late : next;
+        result = draw_kept(w, number);
+        if (number == EW_NO_TRIANGLE || result < 0) break;
+        result = start_next(w, number, late < next);
+        if (result == DRAW_FAN) {
             while ((result = next_of_fan(w)) > 0) ew_raster_draw_begun(w->geometry->raster);
         } else if (result >= DRAW) {
             ew_raster_draw_begun(w->geometry->raster);
         }
-    } while (result >= 0 && result != BAND_DONE);
+    }
     merge_late(w);
     if (w->active > w->counts->most_active) w->counts->most_active = w->active;
     return result < 0 ? result : EW_OK;

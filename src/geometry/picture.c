@@ -136,41 +136,19 @@ static void init_sorting(ew_picture_work *w)
     while (slots & (slots - 1u)) slots &= slots - 1u;
     w->slots = (ew_slot *)(void *)w->rest;
     w->slot_count = slots;
-    for (uint32_t i = 0; i < slots; i++) w->slots[i].tag = UINT32_MAX;
+    for (uint32_t i = 0; i < slots; i++) w->slots[i].number = EW_NO_VERTEX;
     for (uint32_t i = 0; i < w->vertices; i++) w->map[i] = NOT_YET;
 }
 
-static ew_slot *slot_of(const ew_picture_work *w, uint32_t number)
+/* Keeps a vertex that no triangle had before, in w->screen[0], and returns its row. */
+static EW_OWN_FRAME uint16_t remember(ew_picture_work *w, uint32_t number)
 {
-    return w->slot_count ? &w->slots[number & (w->slot_count - 1u)] : NULL;
-}
-
-enum { KNOWN, FORGOTTEN, NEW }; /* a vertex: in w->screen; only its row is known; not transformed yet */
-
-/* Corner k of a triangle, and its row. */
-static EW_OWN_FRAME int look_up(ew_picture_work *w, const ew_object *object, int k, uint16_t vertex, uint16_t *row)
-{
-    if (object->mesh.screen) {
-        w->screen[k] = object->mesh.screen[vertex];
-        *row = row_in_map(w, &w->screen[k]);
-        return KNOWN;
+    const uint16_t row = row_in_map(w, &w->screen[0]);
+    if (w->slot_count) {
+        ew_slot *slot = &w->slots[number & (w->slot_count - 1u)];
+        slot->vertex = w->screen[0];
+        slot->number = number;
     }
-    const uint32_t number = w->first_vertex + vertex;
-    const ew_slot *slot = slot_of(w, number);
-    *row = w->map[number];
-    if (*row == NOT_YET) return NEW;
-    if (!slot || slot->tag >> 8 != number) return FORGOTTEN;
-    ew_slot_get(&w->screen[k], slot);
-    return KNOWN;
-}
-
-/* Remembers the vertex in w->screen[k], and returns its row. */
-static EW_OWN_FRAME uint16_t remember(ew_picture_work *w, int k, uint16_t vertex)
-{
-    const uint32_t number = w->first_vertex + vertex;
-    ew_slot *slot = slot_of(w, number);
-    const uint16_t row = row_in_map(w, &w->screen[k]);
-    if (slot) ew_slot_put(slot, number, &w->screen[k]);
     w->map[number] = row;
     w->counts->transformed++;
     return row;
@@ -189,26 +167,57 @@ static int32_t first_row_of(const ew_picture_work *w, const uint16_t row[3])
     return low < high ? low : w->end;
 }
 
-/* Appends an object's triangles that may be seen. */
+/* The row of a vertex, or NOT_YET. */
+static inline uint16_t row_of(const ew_picture_work *w, const ew_mesh *mesh, const uint16_t *map, uint16_t vertex)
+{
+    return mesh->screen ? row_in_map(w, &mesh->screen[vertex]) : map[vertex];
+}
+
+/* A vertex on the screen, or NULL where another one has its slot. */
+static inline const ew_screen_vertex *vertex_of(const ew_slot *slots, uint32_t mask, const ew_mesh *mesh, uint32_t first,
+                                                uint16_t vertex)
+{
+    if (mesh->screen) return &mesh->screen[vertex];
+    const uint32_t number = first + vertex;
+    const ew_slot *slot = &slots[number & mask];
+    return slot->number == number ? &slot->vertex : NULL;
+}
+
+/* Appends a triangle to the list. */
+static inline void append(ew_picture_work *w, uint32_t number, int32_t first)
+{
+    const uint32_t below = (uint32_t)(first - w->picture->first_row);
+    const uint32_t band = w->rows == 1 ? below : below / w->rows;
+    w->entries[w->entry_count++] = number | band << EW_NUMBER_BITS;
+}
+
+/* Appends an object's triangles that may be seen. What hides them is looked at where their vertices are at
+ * hand; the rest is seen to when they begin. */
 static EW_OWN_FRAME void list_object(ew_picture_work *w, const ew_object *object)
 {
-    const uint16_t *index = object->mesh.indices;
-    const int both_sides = object->material.flags & EW_DOUBLE_SIDED;
-    for (uint32_t i = 0; i < object->mesh.index_count; i += 3, index += 3) {
+    const ew_mesh *mesh = &object->mesh;
+    const uint16_t *index = mesh->indices, *const end = index + mesh->index_count;
+    const uint16_t *map = w->map + w->first_vertex;
+    const ew_slot *slots = w->slots;
+    const uint32_t mask = w->slot_count - 1u, first_vertex = w->first_vertex;
+    const int looks = mesh->screen || w->slot_count, both_sides = object->material.flags & EW_DOUBLE_SIDED;
+    for (uint32_t number = w->first_triangle; index < end; index += 3, number++) {
         uint16_t row[3];
-        int known = 1;
         for (int k = 0; k < 3; k++) {
-            const int what = look_up(w, object, k, index[k], &row[k]);
-            if (what == FORGOTTEN) known = 0;
-            if (what != NEW) continue;
-            ew_transform_vertices(&object->transform, &object->mesh.vertices[index[k]], 1, &w->screen[k]);
-            row[k] = remember(w, k, index[k]);
+            row[k] = row_of(w, mesh, map, index[k]);
+            if (row[k] != NOT_YET) continue;
+            ew_transform_vertices(&object->transform, &mesh->vertices[index[k]], 1, &w->screen[0]);
+            row[k] = remember(w, first_vertex + index[k]);
         }
         const int32_t first = first_row_of(w, row);
-        if (first >= w->end || (known && ew_is_hidden(w->screen, both_sides))) continue;
-        const uint32_t below = (uint32_t)(first - w->picture->first_row);
-        const uint32_t band = w->rows == 1 ? below : below / w->rows;
-        w->entries[w->entry_count++] = (w->first_triangle + i / 3u) | band << EW_NUMBER_BITS;
+        if (first >= w->end) continue;
+        if (looks) {
+            const ew_screen_vertex *a = vertex_of(slots, mask, mesh, first_vertex, index[0]);
+            const ew_screen_vertex *b = vertex_of(slots, mask, mesh, first_vertex, index[1]);
+            const ew_screen_vertex *c = vertex_of(slots, mask, mesh, first_vertex, index[2]);
+            if (a && b && c && ew_is_hidden(a, b, c, both_sides)) continue;
+        }
+        append(w, number, first);
     }
 }
 

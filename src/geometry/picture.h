@@ -16,6 +16,7 @@
 enum { EW_NUMBER_BITS = 20 };
 #define EW_NUMBER_MASK ((UINT32_C(1) << EW_NUMBER_BITS) - 1u)
 #define EW_NO_TRIANGLE EW_NUMBER_MASK
+#define EW_NO_VERTEX UINT32_MAX
 
 /* A place among the kept ones: 8 bytes each, or none. */
 typedef uint16_t ew_place;
@@ -32,9 +33,8 @@ typedef union ew_kept {
 
 /* A vertex that later triangles will need. */
 typedef struct ew_slot {
-    ew_uq1_31 w;
-    ew_q20_12 x, y;
-    uint32_t tag; /* the vertex's number times 2^8, and its outcode                          */
+    ew_screen_vertex vertex;
+    uint32_t number;
 } ew_slot;
 
 typedef struct ew_picture_work {
@@ -69,6 +69,7 @@ typedef struct ew_picture_work {
     /* The object at hand, by number, and the one whose material the raster has. */
     uint32_t object, first_triangle, first_vertex, used;
     const ew_object *at;
+    uint32_t behind;      /* the first triangle that is not the object's                    */
     uint32_t number;      /* the triangle at hand, its corners in `screen`                  */
     ew_screen_vertex screen[3];
 } ew_picture_work;
@@ -80,23 +81,12 @@ static inline int32_t ew_row_of(ew_q20_12 y)
     return EW_ASR(ew_snapped_from_q20_12(y) + half - 1, EW_SUBPIXEL_BITS);
 }
 
-static inline void ew_slot_put(ew_slot *slot, uint32_t number, const ew_screen_vertex *v)
-{
-    slot->w = v->w, slot->x = v->x, slot->y = v->y;
-    slot->tag = number << 8 | v->outcode;
-}
-static inline void ew_slot_get(ew_screen_vertex *v, const ew_slot *slot)
-{
-    v->w = slot->w, v->x = slot->x, v->y = slot->y;
-    v->outcode = (uint8_t)slot->tag;
-}
-
 /* Whether nothing of the triangle of three vertices can be seen. */
-static inline int ew_is_hidden(const ew_screen_vertex s[3], int both_sides)
+static inline int ew_is_hidden(const ew_screen_vertex *a, const ew_screen_vertex *b, const ew_screen_vertex *c, int both_sides)
 {
-    const int any = s[0].outcode | s[1].outcode | s[2].outcode, all = s[0].outcode & s[1].outcode & s[2].outcode;
+    const int any = a->outcode | b->outcode | c->outcode, all = a->outcode & b->outcode & c->outcode;
     if (any & (EW_OUT_NEAR | EW_OUT_GUARD)) return all & ~EW_OUT_GUARD;
-    return all || (!both_sides && !ew_faces_the_eye(&s[0], &s[1], &s[2]));
+    return all || (!both_sides && !ew_faces_the_eye(a, b, c));
 }
 
 /* ---- active.c ---- */

@@ -136,8 +136,9 @@ int ew_raster_draw_begun(ew_raster *raster)
 
 /* What is in use of an ew_triangle: quick ones have three planes. */
 enum {
-    NARROW_BYTES = offsetof(ew_triangle, plane) + 3 * sizeof(ew_plane32),
-    WIDE_BYTES = offsetof(ew_triangle, plane) + 3 * sizeof(ew_plane64)
+    HEAD_BYTES = offsetof(ew_triangle, plane),
+    NARROW_BYTES = HEAD_BYTES + 3 * sizeof(ew_plane32),
+    WIDE_BYTES = HEAD_BYTES + 3 * sizeof(ew_plane64)
 };
 
 size_t ew_active_bytes(const ew_triangle *t)
@@ -161,23 +162,46 @@ void ew_raster_keep(ew_raster *raster, ew_active *active)
     active->edge[0] = raster->work.edge[0];
     active->edge[1] = raster->work.edge[1];
     const ew_triangle *t = &raster->work.triangle;
-    if (!t->is_quick) active->triangle = *t;
-    else if (t->is_wide) EW_COPY(&active->triangle, t, WIDE_BYTES);
-    else EW_COPY(&active->triangle, t, NARROW_BYTES);
+    if (!t->is_quick) {
+        active->triangle = *t;
+        return;
+    }
+    EW_COPY(&active->triangle, t, HEAD_BYTES);
+    for (int i = 0; i < 3; i++) {
+        if (t->is_wide) active->triangle.plane.wide[i] = t->plane.wide[i];
+        else active->triangle.plane.narrow[i] = t->plane.narrow[i];
+    }
 }
 
-/* Rows up to `end` between two changes of edges. Generic fills only know work.triangle. */
-static int active_part(ew_raster *raster, ew_active *active, int32_t end)
+EW_NOINLINE void start_lowest_edge(ew_active *active)
 {
-    ew_triangle *t = &active->triangle;
-    if (t->is_quick) return ew_walk_rows(raster, t, active->edge, active->row, end);
-    raster->work.triangle = *t;
+    ew_edge_start(&active->edge[!active->longest], active->x[0], active->y[0], active->x[1], active->y[1], active->turn);
+}
+
+/* Generic fills only know work.triangle. Copying has frames of its own: it needs many registers. */
+EW_NOINLINE void copy_to_work(ew_raster *raster, const ew_active *active)
+{
+    raster->work.triangle = active->triangle;
     raster->work.edge[0] = active->edge[0];
     raster->work.edge[1] = active->edge[1];
-    const int reached = ew_walk_rows(raster, &raster->work.triangle, raster->work.edge, active->row, end);
-    *t = raster->work.triangle;
+}
+EW_NOINLINE void copy_from_work(ew_active *active, const ew_raster *raster)
+{
+    active->triangle = raster->work.triangle;
     active->edge[0] = raster->work.edge[0];
     active->edge[1] = raster->work.edge[1];
+}
+
+/* To a row on which edges change, or above. */
+EW_NOINLINE int draw_part(ew_raster *raster, ew_active *active, int32_t end)
+{
+    const int32_t row = active->row;
+    active->row = (uint16_t)end;
+    if (row == active->turn) start_lowest_edge(active);
+    if (active->triangle.is_quick) return ew_walk_rows(raster, &active->triangle, active->edge, row, end);
+    copy_to_work(raster, active);
+    const int reached = ew_walk_rows(raster, &raster->work.triangle, raster->work.edge, row, end);
+    copy_from_work(active, raster);
     return reached;
 }
 
@@ -185,13 +209,7 @@ int ew_raster_draw_active(ew_raster *raster, ew_active *active)
 {
     const int32_t end = smaller(active->end, raster->scissor.y1), turn = active->turn;
     int reached = 0;
-    while (active->row < end) {
-        if (active->row == turn) {
-            ew_edge_start(&active->edge[!active->longest], active->x[0], active->y[0], active->x[1], active->y[1], turn);
-        }
-        const int32_t to = active->row < turn ? smaller(turn, end) : end;
-        reached |= active_part(raster, active, to);
-        active->row = (uint16_t)to;
-    }
-    return reached;
+    if (active->row >= end) return 0;
+    if (active->row < turn && turn < end) reached = draw_part(raster, active, turn);
+    return draw_part(raster, active, end) | reached;
 }
