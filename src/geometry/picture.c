@@ -140,18 +140,23 @@ static void init_sorting(ew_picture_work *w)
     for (uint32_t i = 0; i < w->vertices; i++) w->map[i] = NOT_YET;
 }
 
-/* Keeps a vertex that no triangle had before, in w->screen[0], and returns its row. */
-static EW_OWN_FRAME uint16_t remember(ew_picture_work *w, uint32_t number)
+/* Transforms a vertex that no triangle had before, and others behind it, which are likely to come
+ * next. */
+static EW_OWN_FRAME void transform_some(ew_picture_work *w, const ew_object *object, uint32_t vertex)
 {
-    const uint16_t row = row_in_map(w, &w->screen[0]);
-    if (w->slot_count) {
+    uint16_t *map = w->map + w->first_vertex;
+    uint32_t n = 1;
+    while (n < EW_BATCH && vertex + n < object->vertex_count && map[vertex + n] == NOT_YET) n++;
+    ew_transform_vertices(&object->transform, &object->mesh.vertices[vertex], n, w->screen);
+    w->counts->transformed += n;
+    for (uint32_t i = 0; i < n; i++, vertex++) {
+        const uint32_t number = w->first_vertex + vertex;
+        map[vertex] = row_in_map(w, &w->screen[i]);
+        if (!w->slot_count) continue;
         ew_slot *slot = &w->slots[number & (w->slot_count - 1u)];
-        slot->vertex = w->screen[0];
+        slot->vertex = w->screen[i];
         slot->number = number;
     }
-    w->map[number] = row;
-    w->counts->transformed++;
-    return row;
 }
 
 /* The row that a triangle begins in, or w->end when it covers no row. */
@@ -191,34 +196,35 @@ static inline void append(ew_picture_work *w, uint32_t number, int32_t first)
     w->entries[w->entry_count++] = number | band << EW_NUMBER_BITS;
 }
 
-/* Appends an object's triangles that may be seen. What hides them is looked at where their vertices are at
- * hand; the rest is seen to when they begin. */
-static EW_OWN_FRAME void list_object(ew_picture_work *w, const ew_object *object)
+/* Appends an object's triangles that may be seen, from w->number on. What hides them is looked at where
+ * their vertices are at hand; the rest is seen to when they begin. Returns a vertex that has to be
+ * transformed before it can go on, or EW_NO_VERTEX behind the last triangle. */
+static EW_OWN_FRAME uint32_t list_some(ew_picture_work *w, const ew_object *object)
 {
     const ew_mesh *mesh = &object->mesh;
-    const uint16_t *index = mesh->indices, *const end = index + mesh->index_count;
-    const uint16_t *map = w->map + w->first_vertex;
-    const ew_slot *slots = w->slots;
-    const uint32_t mask = w->slot_count - 1u, first_vertex = w->first_vertex;
+    const uint16_t *index = mesh->indices + (size_t)(w->number - w->first_triangle) * 3u;
+    const uint16_t *const end = mesh->indices + mesh->index_count, *map = w->map + w->first_vertex;
+    const uint32_t first_vertex = w->first_vertex;
     const int looks = mesh->screen || w->slot_count, both_sides = object->material.flags & EW_DOUBLE_SIDED;
-    for (uint32_t number = w->first_triangle; index < end; index += 3, number++) {
+    for (; index < end; index += 3, w->number++) {
         uint16_t row[3];
         for (int k = 0; k < 3; k++) {
             row[k] = row_of(w, mesh, map, index[k]);
-            if (row[k] != NOT_YET) continue;
-            ew_transform_vertices(&object->transform, &mesh->vertices[index[k]], 1, &w->screen[0]);
-            row[k] = remember(w, first_vertex + index[k]);
+            if (row[k] == NOT_YET) return index[k];
         }
         const int32_t first = first_row_of(w, row);
         if (first >= w->end) continue;
         if (looks) {
+            const ew_slot *slots = w->slots;
+            const uint32_t mask = w->slot_count - 1u;
             const ew_screen_vertex *a = vertex_of(slots, mask, mesh, first_vertex, index[0]);
             const ew_screen_vertex *b = vertex_of(slots, mask, mesh, first_vertex, index[1]);
             const ew_screen_vertex *c = vertex_of(slots, mask, mesh, first_vertex, index[2]);
             if (a && b && c && ew_is_hidden(a, b, c, both_sides)) continue;
         }
-        append(w, number, first);
+        append(w, w->number, first);
     }
+    return EW_NO_VERTEX;
 }
 
 /* D. L. Shell, "A high-speed sorting procedure", 1959; steps by D. E. Knuth: (3^k - 1) / 2. */
@@ -243,7 +249,8 @@ static EW_OWN_FRAME void sort(ew_picture_work *w)
     w->first_triangle = w->first_vertex = 0;
     for (uint32_t i = 0; i < w->count; i++) {
         const ew_object *object = &w->objects[i];
-        list_object(w, object);
+        w->number = w->first_triangle;
+        for (uint32_t vertex; (vertex = list_some(w, object)) != EW_NO_VERTEX;) transform_some(w, object, vertex);
         w->first_triangle += object->mesh.index_count / 3u;
         if (!object->mesh.screen) w->first_vertex += object->vertex_count;
     }

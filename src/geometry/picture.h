@@ -37,6 +37,8 @@ typedef struct ew_slot {
     uint32_t number;
 } ew_slot;
 
+enum { EW_BATCH = 8 };
+
 typedef struct ew_picture_work {
     const ew_picture *picture;
     const ew_object *objects;
@@ -71,7 +73,7 @@ typedef struct ew_picture_work {
     const ew_object *at;
     uint32_t behind;      /* the first triangle that is not the object's                    */
     uint32_t number;      /* the triangle at hand, its corners in `screen`                  */
-    ew_screen_vertex screen[3];
+    ew_screen_vertex screen[EW_BATCH];
 } ew_picture_work;
 
 /* The first row whose centre is at or below y: where a triangle may begin. */
