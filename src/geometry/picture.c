@@ -72,11 +72,12 @@ size_t ew_picture_least(const ew_picture *picture, const ew_object *objects, uin
 
 size_t ew_picture_bytes(const ew_picture *picture, const ew_object *objects, uint32_t count, uint32_t active)
 {
-    enum { OF_ACTIVE = 112 };
+    enum { OF_ACTIVE = 112, AND = 448 };
     memory_plan plan;
     if (!plan_init(&plan, picture, objects, count)) return 0;
-    const uint32_t most = (uint32_t)(SIZE_MAX / 2u - plan.least) / OF_ACTIVE;
-    return (size_t)plan.least + (plan.bands > 1 ? (size_t)(active < most ? active : most) * OF_ACTIVE : 0);
+    if (plan.bands == 1) return plan.least;
+    const uint32_t most = (uint32_t)(SIZE_MAX / 2u - plan.least - AND) / OF_ACTIVE;
+    return (size_t)plan.least + AND + (size_t)(active < most ? active : most) * OF_ACTIVE;
 }
 
 /* The first thing in the memory. */

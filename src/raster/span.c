@@ -583,8 +583,8 @@ EW_ALWAYS_INLINE int rows_of_texture(ew_raster *raster, ew_triangle *t, ew_edge 
         colour += raster->target.stride;
         depth += raster->target.stride;
     }
-    edge[0] = l;
-    edge[1] = r;
+    edge[0].x = l.x, edge[0].remainder = l.remainder;
+    edge[1].x = r.x, edge[1].remainder = r.remainder;
     return reached;
 }
 EW_NOINLINE int rows_of_narrow(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
