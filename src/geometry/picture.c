@@ -160,41 +160,22 @@ static EW_OWN_FRAME void transform_some(ew_picture_work *w, const ew_object *obj
     }
 }
 
-/* The row that a triangle begins in, or w->end when it covers no row. */
-static int32_t first_row_of(const ew_picture_work *w, const uint16_t row[3])
-{
-    uint16_t low = row[0], high = row[0];
-    for (int k = 1; k < 3; k++) {
-        if (row[k] < low) low = row[k];
-        if (row[k] > high) high = row[k];
-    }
-    if (low == NEAR) return w->end;
-    if (high >= UNKNOWN) return w->first;
-    return low < high ? low : w->end;
-}
-
-/* The row of a vertex, or NOT_YET. */
-static inline uint16_t row_of(const ew_picture_work *w, const ew_mesh *mesh, const uint16_t *map, uint16_t vertex)
-{
-    return mesh->screen ? row_in_map(w, &mesh->screen[vertex]) : map[vertex];
-}
-
-/* A vertex on the screen, or NULL where another one has its slot. */
-static inline const ew_screen_vertex *vertex_of(const ew_slot *slots, uint32_t mask, const ew_mesh *mesh, uint32_t first,
-                                                uint16_t vertex)
-{
-    if (mesh->screen) return &mesh->screen[vertex];
-    const uint32_t number = first + vertex;
-    const ew_slot *slot = &slots[number & mask];
-    return slot->number == number ? &slot->vertex : NULL;
-}
-
-/* Appends a triangle to the list. */
+/* Appends a triangle that begins on row `first` to the list. */
 static inline void append(ew_picture_work *w, uint32_t number, int32_t first)
 {
     const uint32_t below = (uint32_t)(first - w->picture->first_row);
     const uint32_t band = w->rows == 1 ? below : below / w->rows;
     w->entries[w->entry_count++] = number | band << EW_NUMBER_BITS;
+}
+
+/* The row that a triangle begins in, from those of its corners, or -1 when it covers no row. */
+static inline int32_t first_row_of(const ew_picture_work *w, uint16_t a, uint16_t b, uint16_t c)
+{
+    uint16_t low = a < b ? a : b, high = a < b ? b : a;
+    if (c < low) low = c;
+    if (c > high) high = c;
+    if (high < NOT_YET) return low < high ? low : -1;
+    return low == NEAR || w->first >= w->end ? -1 : w->first;
 }
 
 /* Appends an object's triangles that may be seen, from w->number on. What hides them is looked at where
@@ -205,27 +186,41 @@ static EW_OWN_FRAME uint32_t list_some(ew_picture_work *w, const ew_object *obje
     const ew_mesh *mesh = &object->mesh;
     const uint16_t *index = mesh->indices + (size_t)(w->number - w->first_triangle) * 3u;
     const uint16_t *const end = mesh->indices + mesh->index_count, *map = w->map + w->first_vertex;
-    const uint32_t first_vertex = w->first_vertex;
-    const int looks = mesh->screen || w->slot_count, both_sides = object->material.flags & EW_DOUBLE_SIDED;
-    for (; index < end; index += 3, w->number++) {
-        uint16_t row[3];
-        for (int k = 0; k < 3; k++) {
-            row[k] = row_of(w, mesh, map, index[k]);
-            if (row[k] == NOT_YET) return index[k];
+    const ew_slot *const slots = w->slots;
+    const uint32_t mask = w->slot_count - 1u, first_vertex = w->first_vertex;
+    const int both_sides = object->material.flags & EW_DOUBLE_SIDED;
+    for (; index < end; index += 3) {
+        const uint32_t a = index[0], b = index[1], c = index[2];
+        if (map[a] == NOT_YET || map[b] == NOT_YET || map[c] == NOT_YET) {
+            w->number = w->first_triangle + (uint32_t)(index - mesh->indices) / 3u;
+            return map[a] == NOT_YET ? a : map[b] == NOT_YET ? b : c;
         }
-        const int32_t first = first_row_of(w, row);
-        if (first >= w->end) continue;
-        if (looks) {
-            const ew_slot *slots = w->slots;
-            const uint32_t mask = w->slot_count - 1u;
-            const ew_screen_vertex *a = vertex_of(slots, mask, mesh, first_vertex, index[0]);
-            const ew_screen_vertex *b = vertex_of(slots, mask, mesh, first_vertex, index[1]);
-            const ew_screen_vertex *c = vertex_of(slots, mask, mesh, first_vertex, index[2]);
-            if (a && b && c && ew_is_hidden(a, b, c, both_sides)) continue;
+        const int32_t first = first_row_of(w, map[a], map[b], map[c]);
+        if (first < 0) continue;
+        if (mask != UINT32_MAX) {
+            const ew_slot *sa = &slots[(first_vertex + a) & mask], *sb = &slots[(first_vertex + b) & mask];
+            const ew_slot *sc = &slots[(first_vertex + c) & mask];
+            if (sa->number == first_vertex + a && sb->number == first_vertex + b && sc->number == first_vertex + c &&
+                ew_is_hidden(&sa->vertex, &sb->vertex, &sc->vertex, both_sides)) {
+                continue;
+            }
         }
-        append(w, w->number, first);
+        append(w, w->first_triangle + (uint32_t)(index - mesh->indices) / 3u, first);
     }
     return EW_NO_VERTEX;
+}
+
+/* The same where all vertices are on the screen already. */
+static EW_OWN_FRAME void list_transformed(ew_picture_work *w, const ew_object *object)
+{
+    const ew_mesh *mesh = &object->mesh;
+    const ew_screen_vertex *const screen = mesh->screen;
+    const int both_sides = object->material.flags & EW_DOUBLE_SIDED;
+    for (uint32_t i = 0; i < mesh->index_count; i += 3) {
+        const ew_screen_vertex *a = &screen[mesh->indices[i]], *b = &screen[mesh->indices[i + 1]], *c = &screen[mesh->indices[i + 2]];
+        const int32_t first = first_row_of(w, row_in_map(w, a), row_in_map(w, b), row_in_map(w, c));
+        if (first >= 0 && !ew_is_hidden(a, b, c, both_sides)) append(w, w->first_triangle + i / 3u, first);
+    }
 }
 
 /* D. L. Shell, "A high-speed sorting procedure", 1959; steps by D. E. Knuth: (3^k - 1) / 2. */
@@ -251,7 +246,8 @@ static EW_OWN_FRAME void sort(ew_picture_work *w)
     for (uint32_t i = 0; i < w->count; i++) {
         const ew_object *object = &w->objects[i];
         w->number = w->first_triangle;
-        for (uint32_t vertex; (vertex = list_some(w, object)) != EW_NO_VERTEX;) transform_some(w, object, vertex);
+        if (object->mesh.screen) list_transformed(w, object);
+        else for (uint32_t vertex; (vertex = list_some(w, object)) != EW_NO_VERTEX;) transform_some(w, object, vertex);
         w->first_triangle += object->mesh.index_count / 3u;
         if (!object->mesh.screen) w->first_vertex += object->vertex_count;
     }
