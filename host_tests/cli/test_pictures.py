@@ -57,6 +57,24 @@ class Models(unittest.TestCase):
             if extra:
                 self.assertLessEqual(max(u, v), 1 / 16)
 
+    def test_memory_modes(self):
+        """Every model, three frames: in bands and line by line, with room and without."""
+        models = [os.path.join(SHARED, name) for name in (
+            "chest/chest_gold.glb", "barrel_jpeg/barrel.glb", "fox/Fox.glb", "box_animated/BoxAnimated.glb",
+            "character/character.glb", "speeder/craft_speederD.gltf", "building_quantized/building_quantized.gltf",
+            "cubic_mixed/03_all_animations.gltf", "texture_settings/TextureSettingsTest.glb", "feature_mix/feature_mix.gltf")]
+        models = [model for model in models if os.path.exists(model)]
+        if not models:
+            self.skipTest("the folder ../shared/models is not there")
+        for model in models:
+            scene, files = self.baked(model), []
+            for options in ([], ["--rows", "1"], ["--rows", "1", "--active", "0"], ["--rows", "8"], ["--rows", "37", "--active", "3"]):
+                files.append(os.path.join(self.folder.name, f"mode-{len(files)}.png"))
+                done = run("ew-render", scene, "-o", files[-1], "--size", "200x123", "--frames", "3", "--fps", "3", "-a", *options)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                with open(files[0], "rb") as at_once, open(files[-1], "rb") as banded, self.subTest(model=model, options=options):
+                    self.assertTrue(at_once.read() == banded.read())
+
     def test_courtyard(self):
         scene = os.path.join(self.folder.name, "courtyard.glb")
         subprocess.run(["python3", os.path.join(ROOT, "examples/scenes/courtyard.py"), "-o", scene], check=True,
@@ -119,6 +137,14 @@ class Render(unittest.TestCase):
         self.assertNotEqual(pictures[0], pictures[1])
         self.assertNotEqual(pictures[1], pictures[2])
         self.assertFalse(os.path.exists(self.path("f-0003.png")))
+
+    def test_bands_are_one_picture(self):
+        done = run("ew-render", self.scene, "-o", self.path("line.png"), "--rows", "1", "--active", "20")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertRegex(done.stdout, r"line\.png: bands of 1 rows in \d+ bytes, \d+ triangles active at most, [1-9]\d* of \d+ set-ups")
+        self.assertEqual(png_pixels(self.path("line.png")), png_pixels(os.path.join(ROOT, "docs/courtyard.png")))
+        for option, value in (("--rows", "0"), ("--rows", "4097"), ("--rows", "x"), ("--active", "-1")):
+            self.assertEqual(run("ew-render", self.scene, option, value).returncode, 2)
 
     def test_an_animation_starts_with_the_first_frame(self):
         run("ew-render", self.scene, "-o", self.path("a.png"), "--size", "40x30", "--frames", "4", "--animation")

@@ -143,7 +143,7 @@ static void kept(void **state)
                     assert_true(result == (reached[i] < 0 ? reached[i] : result) && result <= 1);
                     begun[i] = result == 1 ? 1 : 2;
                     if (result <= 0) continue;
-                    assert_true(ew_raster_active_bytes(&raster) <= sizeof(ew_active));
+                    assert_true(ew_active_bytes(&raster.work.triangle) <= sizeof(ew_active));
                     if (ew_raster_begun_end(&raster) <= first + rows || pick(8) == 0) {
                         now[i] |= ew_raster_draw_begun(&raster);
                         begun[i] = ew_raster_begun_end(&raster) <= first + rows ? 2 : 0; /* else anew next time */
@@ -152,7 +152,7 @@ static void kept(void **state)
                     /* what follows its bytes is somebody else's */
                     memset(&active[i], 0x5A, sizeof active[i]);
                     ew_raster_keep(&raster, &active[i]);
-                    const uint8_t *end = (const uint8_t *)&active[i] + ew_raster_active_bytes(&raster);
+                    const uint8_t *end = (const uint8_t *)&active[i] + ew_active_bytes(&active[i].triangle);
                     for (const uint8_t *p = end; p < (const uint8_t *)(&active[i] + 1); p++) assert_int_equal(*p, 0x5A);
                 }
                 if (begun[i] == 1 && active[i].row < active[i].end) {

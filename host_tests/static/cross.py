@@ -26,7 +26,8 @@ CONFIGURATIONS = {
     "the same with transform": (("raster", "geometry"), GEOMETRY, NO_FILLS),
     "raster, all fills": (("raster",), RASTER, []),
     "the same with transform and light": (("raster", "geometry", "light"), GEOMETRY, []),
-    "everything, with scenes": (("fixed", "raster", "geometry", "light", "scene", "error"), GEOMETRY + ("src/scene",), []),
+    "textured, depth, in bands and lines": (("raster", "geometry", "picture"), GEOMETRY, NO_FILLS),
+    "everything, with scenes": (("fixed", "raster", "geometry", "picture", "light", "scene", "error"), GEOMETRY + ("src/scene",), []),
     "display, device side": (("display",), ("fixed", "src/display"), []),
 }
 
@@ -121,12 +122,13 @@ HELPERS = re.compile(r"__aeabi_(lmul|llsl|llsr|lasr|u?idiv(mod)?|u?ldivmod|lcmp|
                      r"__(mul|ashl|ashr|lshr|u?div|u?mod|u?cmp)[sd]i[23]|__gnu_thumb1_case_\w+|memcpy|memset|__riscv_\w+")
 
 
-# The only sources that call through a pointer, and what those calls may reach; the display's
-# callbacks are the firmware's own and not counted.
+# The only sources that call through a pointer, and what those calls may reach; callbacks of
+# the display's and the picture's are the firmware's own and not counted.
 INDIRECT = {
     "src/scene/scene.c": [f"src/scene/scene.c:{kind}_ok" for kind in
                           ("node", "primitive", "material", "texture", "track", "key")],
     "src/display/hid_display.c": [],
+    "src/geometry/picture.c": [],
 }
 
 

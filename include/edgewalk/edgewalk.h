@@ -8,6 +8,7 @@
 #include "fixed.h"
 #include "geometry.h"
 #include "light.h"
+#include "picture.h"
 #include "raster.h"
 #include "scene.h"
 

@@ -116,7 +116,8 @@ typedef struct ew_geometry {
     ew_raster_vertex corner[3]; /* the triangle at hand                                    */
     ew_clip_vertex polygon[2][EW_CLIP_MAX];
     const ew_clip_vertex *clipped; /* the one of the two with the clipper's result         */
-    int clipped_count, clipped_next, clipped_drawn;
+    int clipped_count, clipped_next;
+    const ew_screen_vertex *clip_screen[3];
     int64_t clip_near_w;        /* the near distance in the clipper's unit                 */
     ew_scene_work scene;
 } ew_geometry;

@@ -248,11 +248,11 @@ uint16_t ew_raster_begun_end(const ew_raster *raster);
 /* Draws it without keeping it. Returns whether a pixel was reached. */
 int ew_raster_draw_begun(ew_raster *raster);
 
-/* What it takes to keep it: a multiple of 8, at most sizeof(ew_active). */
-size_t ew_raster_active_bytes(const ew_raster *raster);
+/* What it takes to keep raster->work.triangle, or took to keep active->triangle: a multiple of 8, at
+ * most sizeof(ew_active). */
+size_t ew_active_bytes(const ew_triangle *triangle);
 
-/* Keeps it, once, before it is drawn. `active` has room for ew_raster_active_bytes and the
- * alignment of an ew_active. */
+/* Keeps it, once, before it is drawn. `active` has that room and the alignment of an ew_active. */
 void ew_raster_keep(ew_raster *raster, ew_active *active);
 
 /* Returns whether a pixel was reached. It is done when active->row is active->end. */

@@ -12,6 +12,7 @@
 #include "error.h"
 #include "fixed.h"
 #include "geometry.h"
+#include "picture.h"
 
 typedef struct ew_scene_section {
     const uint8_t *records;
@@ -78,5 +79,14 @@ int ew_scene_pose(const ew_scene *scene, uint32_t time_ms, ew_mat34 *world);
  * triangles that reached a pixel, or the first error of the geometry layer. */
 int32_t ew_scene_draw(const ew_scene *scene, const ew_scene_camera *camera, const ew_mat34 *world,
                       const ew_viewport *viewport, ew_geometry *geometry, ew_screen_vertex *scratch);
+
+/* How many objects ew_scene_objects makes: as many as nodes have primitives. */
+uint32_t ew_scene_object_count(const ew_scene *scene);
+
+/* The scene as ew_scene_draw would draw it, as objects for ew_picture_draw. `geometry` is only worked
+ * in. The objects point into the scene and at themselves: they must stay where they are. Returns
+ * EW_OK, EW_ERR_ARGUMENT or EW_ERR_RANGE. */
+int ew_scene_objects(const ew_scene *scene, const ew_scene_camera *camera, const ew_mat34 *world,
+                     const ew_viewport *viewport, ew_geometry *geometry, ew_object *objects);
 
 #endif

@@ -109,7 +109,7 @@ static ew_q20_12 within_guard(ew_q20_12 a)
 
 /* The homogeneous corners of a triangle, in the clipper's unit. */
 static EW_OWN_FRAME void polygon_from(ew_clip_vertex polygon[3], const clip_unit *unit, const ew_transform *t,
-                         const ew_mesh *mesh, const uint16_t index[3])
+                                     const ew_mesh *mesh, const uint16_t index[3], const ew_screen_vertex *const screen[3])
 {
     const int32_t uv_unit = (int32_t)1 << (12 - mesh->uv_fraction_bits);
     for (int i = 0; i < 3; i++) {
@@ -121,7 +121,7 @@ static EW_OWN_FRAME void polygon_from(ew_clip_vertex polygon[3], const clip_unit
         polygon[i].w = shifted(h.w, unit->down_w);
         polygon[i].u = v->u * uv_unit;
         polygon[i].v = v->v * uv_unit;
-        polygon[i].corner = mesh->screen[index[i]].outcode & (EW_OUT_NEAR | EW_OUT_GUARD) ? -1 : (int8_t)i;
+        polygon[i].corner = screen[i]->outcode & (EW_OUT_NEAR | EW_OUT_GUARD) ? -1 : (int8_t)i;
         const ew_colour888 *c = mesh->colours ? &mesh->colours[index[i]] : &ew_white;
         polygon[i].colour[0] = (uint16_t)(c->r * 256u);
         polygon[i].colour[1] = (uint16_t)(c->g * 256u);
@@ -129,16 +129,15 @@ static EW_OWN_FRAME void polygon_from(ew_clip_vertex polygon[3], const clip_unit
     }
 }
 
-/* Corner i of the clipped polygon to its place in the fan: g->corner. `index` are its triangle's
- * vertices. */
-static EW_OWN_FRAME void fan_corner(ew_geometry *g, int i, const ew_mesh *mesh, const uint16_t index[3])
+/* Corner i of the clipped polygon to its place in the fan: g->corner. */
+static EW_OWN_FRAME void clip_corner(ew_geometry *g, int i)
 {
     const ew_clip_vertex *p = &g->clipped[i];
     ew_raster_vertex *out = &g->corner[i < 2 ? i : 2];
     ew_screen_vertex made;
     if (i > 2) g->corner[1] = g->corner[2];
     if (p->corner >= 0) {
-        made = mesh->screen[index[p->corner]];
+        made = *g->clip_screen[p->corner];
     } else {
         ew_homogeneous_vertex h;
         h.x = p->x, h.y = p->y, h.w = p->w;
@@ -156,14 +155,12 @@ static EW_OWN_FRAME void fan_corner(ew_geometry *g, int i, const ew_mesh *mesh, 
     out->colour.b = (uint8_t)((p->colour[2] + 128u) >> 8);
 }
 
-/* Leaves the clipped polygon in g->clipped and returns the number of its corners, below 3 when
- * nothing is left. */
-static EW_OWN_FRAME int clip(ew_geometry *g, const ew_mesh *mesh, const uint16_t index[3])
+EW_OWN_FRAME void ew_clip_triangle(ew_geometry *g, const ew_mesh *mesh, const uint16_t index[3])
 {
     clip_unit unit;
     choose_unit(&unit, &g->transform);
     ew_clip_vertex *polygon = g->polygon[0], *other = g->polygon[1];
-    polygon_from(polygon, &unit, &g->transform, mesh, index);
+    polygon_from(polygon, &unit, &g->transform, mesh, index, g->clip_screen);
     int count = 3;
     for (int plane = PLANE_NEAR; plane < PLANE_COUNT && count >= 3; plane++) {
         if (plane == PLANE_LEFT && !leaves_guard(polygon, count)) break;
@@ -174,19 +171,15 @@ static EW_OWN_FRAME int clip(ew_geometry *g, const ew_mesh *mesh, const uint16_t
     }
     g->clipped = polygon;
     g->clip_near_w = unit.near_w;
-    return count;
+    g->clipped_count = count;
+    g->clipped_next = 0;
 }
 
-int ew_draw_clipped(ew_geometry *g, const ew_mesh *mesh, const uint16_t index[3])
+int ew_clip_next(ew_geometry *g)
 {
-    g->clipped_count = clip(g, mesh, index);
-    g->clipped_drawn = 0;
-    for (g->clipped_next = 0; g->clipped_next < g->clipped_count; g->clipped_next++) {
-        fan_corner(g, g->clipped_next, mesh, index);
-        if (g->clipped_next < 2) continue;
-        int result = ew_raster_triangle_in_range(g->raster, &g->corner[0], &g->corner[1], &g->corner[2]);
-        if (result < 0) return result;
-        g->clipped_drawn |= result;
+    while (g->clipped_next < g->clipped_count) {
+        clip_corner(g, g->clipped_next);
+        if (g->clipped_next++ >= 2) return 1;
     }
-    return g->clipped_drawn;
+    return 0;
 }

@@ -1,17 +1,6 @@
 /* Triangles from indices: what cannot be seen is left out before anything is set up. */
 #include "project.h"
 
-/* Whether the triangle of the snapped corners is a front: its area negative. Most of a
- * closed model is decided here. */
-static inline int faces_the_eye(const ew_screen_vertex *a, const ew_screen_vertex *b,
-                                const ew_screen_vertex *c)
-{
-    int32_t x0 = ew_snapped_from_q20_12(a->x), y0 = ew_snapped_from_q20_12(a->y);
-    int32_t dx1 = ew_snapped_from_q20_12(b->x) - x0, dy1 = ew_snapped_from_q20_12(b->y) - y0;
-    int32_t dx2 = ew_snapped_from_q20_12(c->x) - x0, dy2 = ew_snapped_from_q20_12(c->y) - y0;
-    return ew_product_less(dx1, dy2, dx2, dy1); /* |d| <= 2^26 */
-}
-
 /* The triangle at hand is that of three vertices on the screen. Without colours in the mesh, the
  * corners keep those that they have: white. */
 static EW_OWN_FRAME void take_corners(ew_geometry *geometry, const ew_mesh *mesh, const uint16_t index[3])
@@ -19,13 +8,7 @@ static EW_OWN_FRAME void take_corners(ew_geometry *geometry, const ew_mesh *mesh
     ew_raster_vertex *const v = geometry->corner;
     const int32_t uv_unit = (int32_t)1 << (12 - mesh->uv_fraction_bits);
     for (int k = 0; k < 3; k++) {
-        const ew_vertex16 *corner = &mesh->vertices[index[k]];
-        const ew_screen_vertex *screen = &mesh->screen[index[k]];
-        v[k].x = screen->x;
-        v[k].y = screen->y;
-        v[k].w = screen->w;
-        v[k].u = corner->u * uv_unit; /* |u| 2^12 <= 2^27 */
-        v[k].v = corner->v * uv_unit;
+        ew_corner_from(&v[k], &mesh->vertices[index[k]], &mesh->screen[index[k]], uv_unit);
         if (mesh->colours) v[k].colour = mesh->colours[index[k]];
     }
 }
@@ -39,6 +22,7 @@ int32_t ew_draw_triangles(ew_geometry *geometry, const ew_mesh *mesh)
     const int one_sided = !(geometry->raster->material.flags & EW_DOUBLE_SIDED);
     for (int k = 0; k < 3; k++) geometry->corner[k].colour = ew_white;
 
+    ew_raster_vertex *const v = geometry->corner;
     int32_t drawn = 0;
     const uint16_t *index = mesh->indices, *const end = index + mesh->index_count;
     for (; index < end; index += 3) {
@@ -47,12 +31,17 @@ int32_t ew_draw_triangles(ew_geometry *geometry, const ew_mesh *mesh)
         int result;
         if (any & (EW_OUT_NEAR | EW_OUT_GUARD)) {
             if (a->outcode & b->outcode & c->outcode & ~EW_OUT_GUARD) continue;
-            result = ew_draw_clipped(geometry, mesh, index);
+            geometry->clip_screen[0] = a, geometry->clip_screen[1] = b, geometry->clip_screen[2] = c;
+            ew_clip_triangle(geometry, mesh, index);
+            result = 0;
+            while (result >= 0 && ew_clip_next(geometry)) {
+                const int reached = ew_raster_triangle_in_range(geometry->raster, &v[0], &v[1], &v[2]);
+                result = reached < 0 ? reached : result | reached;
+            }
         } else {
             if (any && (a->outcode & b->outcode & c->outcode)) continue;
-            if (one_sided && !faces_the_eye(a, b, c)) continue;
+            if (one_sided && !ew_faces_the_eye(a, b, c)) continue;
             take_corners(geometry, mesh, index);
-            ew_raster_vertex *const v = geometry->corner;
             result = ew_raster_triangle_in_range(geometry->raster, &v[0], &v[1], &v[2]);
         }
         if (result < 0) return result;

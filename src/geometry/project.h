@@ -55,8 +55,33 @@ void ew_project(ew_screen_vertex *out, const ew_transform *transform, const ew_h
 /* What a corner of a mesh without colours has. */
 static const ew_colour888 ew_white = { 255, 255, 255 };
 
-/* Clips and draws the triangle of three vertices. Returns 1 or 0 as ew_raster_triangle, or its
- * error. */
-int ew_draw_clipped(ew_geometry *geometry, const ew_mesh *mesh, const uint16_t index[3]);
+/* Whether the triangle of the snapped corners is a front: its area negative. Most of a
+ * closed model is decided here. */
+static inline int ew_faces_the_eye(const ew_screen_vertex *a, const ew_screen_vertex *b, const ew_screen_vertex *c)
+{
+    int32_t x0 = ew_snapped_from_q20_12(a->x), y0 = ew_snapped_from_q20_12(a->y);
+    int32_t dx1 = ew_snapped_from_q20_12(b->x) - x0, dy1 = ew_snapped_from_q20_12(b->y) - y0;
+    int32_t dx2 = ew_snapped_from_q20_12(c->x) - x0, dy2 = ew_snapped_from_q20_12(c->y) - y0;
+    return ew_product_less(dx1, dy2, dx2, dy1); /* |d| <= 2^26 */
+}
+
+/* A corner of a triangle as the raster takes it; uv_unit is 2^(12 - fraction bits). */
+static inline void ew_corner_from(ew_raster_vertex *out, const ew_vertex16 *vertex, const ew_screen_vertex *screen,
+                                  int32_t uv_unit)
+{
+    out->x = screen->x;
+    out->y = screen->y;
+    out->w = screen->w;
+    out->u = vertex->u * uv_unit; /* |u| 2^12 <= 2^27 */
+    out->v = vertex->v * uv_unit;
+}
+
+/* Clips a triangle of a mesh of g->transform; g->clip_screen are its vertices after the transform,
+ * and have to stay. What is left is a fan of triangles. */
+void ew_clip_triangle(ew_geometry *g, const ew_mesh *mesh, const uint16_t index[3]);
+
+/* Leaves the next triangle of the fan in g->corner and returns 1, or 0 behind the last. With
+ * g->clipped_next set to 0 it begins anew. */
+int ew_clip_next(ew_geometry *g);
 
 #endif

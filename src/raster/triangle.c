@@ -135,17 +135,27 @@ int ew_raster_draw_begun(ew_raster *raster)
     return first < end ? draw_rows(raster, end) : 0;
 }
 
-/* What is in use of an ew_triangle: quick ones have three planes. */
-enum {
-    NARROW_BYTES = offsetof(ew_triangle, plane) + 3 * sizeof(ew_plane32),
-    WIDE_BYTES = offsetof(ew_triangle, plane) + 3 * sizeof(ew_plane64)
-};
+/* What an ew_active keeps of a triangle: the head, as many planes as there are, and behind these,
+ * unless it is quick, what generic fills need. */
+enum { HEAD_BYTES = offsetof(ew_triangle, plane), TAIL_BYTES = sizeof(ew_triangle) - offsetof(ew_triangle, u_origin) };
 
-size_t ew_raster_active_bytes(const ew_raster *raster)
+static size_t plane_bytes(const ew_triangle *t)
 {
-    const ew_triangle *t = &raster->work.triangle;
-    const size_t bytes = !t->is_quick ? sizeof *t : t->is_wide ? WIDE_BYTES : NARROW_BYTES;
+    return (t->attributes + 1u) * (t->is_wide ? sizeof *t->plane.wide : sizeof *t->plane.narrow);
+}
+
+size_t ew_active_bytes(const ew_triangle *t)
+{
+    const size_t bytes = HEAD_BYTES + plane_bytes(t) + (t->is_quick ? 0 : TAIL_BYTES);
     return (offsetof(ew_active, triangle) + bytes + 7u) / 8u * 8u;
+}
+
+static void copy_planes(ew_triangle *to, const ew_triangle *from)
+{
+    for (int i = 0; i <= from->attributes; i++) {
+        if (from->is_wide) to->plane.wide[i] = from->plane.wide[i];
+        else to->plane.narrow[i] = from->plane.narrow[i];
+    }
 }
 
 void ew_raster_keep(ew_raster *raster, ew_active *active)
@@ -163,37 +173,65 @@ void ew_raster_keep(ew_raster *raster, ew_active *active)
     active->edge[0] = raster->work.edge[0];
     active->edge[1] = raster->work.edge[1];
     const ew_triangle *t = &raster->work.triangle;
-    if (!t->is_quick) active->triangle = *t;
-    else if (t->is_wide) EW_COPY(&active->triangle, t, WIDE_BYTES);
-    else EW_COPY(&active->triangle, t, NARROW_BYTES);
+    EW_COPY(&active->triangle, t, HEAD_BYTES);
+    copy_planes(&active->triangle, t);
+    if (!t->is_quick) EW_COPY((uint8_t *)&active->triangle.plane + plane_bytes(t), &t->u_origin, TAIL_BYTES);
 }
 
-/* Rows up to `end` between two changes of edges. Generic fills only know work.triangle. */
-static int active_part(ew_raster *raster, ew_active *active, int32_t end)
+/* Generic fills only know work.triangle. Copying has frames of its own: it needs many registers. */
+EW_NOINLINE void copy_to_work(ew_raster *raster, const ew_active *active)
 {
-    ew_triangle *t = &active->triangle;
-    if (t->is_quick) return ew_walk_rows(raster, t, active->edge, active->row, end);
-    raster->work.triangle = *t;
+    ew_triangle *t = &raster->work.triangle;
+    const ew_triangle *from = &active->triangle;
+    EW_COPY(t, from, HEAD_BYTES);
+    copy_planes(t, from);
+    EW_COPY(&t->u_origin, (const uint8_t *)&from->plane + plane_bytes(t), TAIL_BYTES);
     raster->work.edge[0] = active->edge[0];
     raster->work.edge[1] = active->edge[1];
-    const int reached = ew_walk_rows(raster, &raster->work.triangle, raster->work.edge, active->row, end);
-    *t = raster->work.triangle;
-    active->edge[0] = raster->work.edge[0];
-    active->edge[1] = raster->work.edge[1];
+}
+
+/* What a row changes. */
+EW_NOINLINE void copy_from_work(ew_active *active, const ew_raster *raster)
+{
+    const ew_triangle *t = &raster->work.triangle;
+    ew_triangle *to = &active->triangle;
+    for (int i = 0; i <= t->attributes; i++) {
+        if (t->is_wide) to->plane.wide[i].row = t->plane.wide[i].row;
+        else to->plane.narrow[i].row = t->plane.narrow[i].row;
+    }
+    for (int i = 0; i < 2; i++) {
+        active->edge[i].x = raster->work.edge[i].x;
+        active->edge[i].remainder = raster->work.edge[i].remainder;
+    }
+}
+
+EW_NOINLINE void start_lowest_edge(ew_active *active)
+{
+    ew_edge_start(&active->edge[!active->longest], active->x[0], active->y[0], active->x[1], active->y[1], active->turn);
+}
+
+/* To a row on which edges change, or above. */
+EW_NOINLINE int draw_part(ew_raster *raster, ew_active *active, int32_t end)
+{
+    const int32_t row = active->row;
+    active->row = (uint16_t)end;
+    if (row == active->turn) start_lowest_edge(active);
+    if (active->triangle.is_quick) return ew_walk_rows(raster, &active->triangle, active->edge, row, end);
+    copy_to_work(raster, active);
+    const int reached = ew_walk_rows(raster, &raster->work.triangle, raster->work.edge, row, end);
+    copy_from_work(active, raster);
     return reached;
 }
 
 int ew_raster_draw_active(ew_raster *raster, ew_active *active)
 {
-    const int32_t end = smaller(active->end, raster->scissor.y1), turn = active->turn;
-    int reached = 0;
-    while (active->row < end) {
-        if (active->row == turn) {
-            ew_edge_start(&active->edge[!active->longest], active->x[0], active->y[0], active->x[1], active->y[1], turn);
-        }
-        const int32_t to = active->row < turn ? smaller(turn, end) : end;
-        reached |= active_part(raster, active, to);
-        active->row = (uint16_t)to;
+    const int32_t end = smaller(active->end, raster->scissor.y1), row = active->row, turn = active->turn;
+    if (row >= end) return 0;
+    if (active->triangle.is_quick && (row > turn || end <= turn)) {
+        active->row = (uint16_t)end;
+        return ew_walk_rows(raster, &active->triangle, active->edge, row, end);
     }
-    return reached;
+    int reached = 0;
+    if (row < turn && turn < end) reached = draw_part(raster, active, turn);
+    return draw_part(raster, active, end) | reached;
 }

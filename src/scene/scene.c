@@ -472,27 +472,73 @@ static EW_OWN_FRAME int use_material(const ew_scene *scene, uint32_t number, ew_
     return ew_raster_set_material(raster, &material);
 }
 
-/* Makes material, transform and mesh ready for a primitive, with its vertices on the screen. */
-static EW_OWN_FRAME int prepare_primitive(const ew_scene *scene, uint32_t number, ew_geometry *geometry)
+/* A primitive's transform, by way of the node's and the view in work. */
+static int primitive_transform(const uint8_t *p, ew_scene_work *work, ew_transform *transform)
 {
-    const uint8_t *p = record(scene, EW_SECTION_PRIM, number);
-    ew_mat34 *const model_view = &geometry->scene.model_view;
+    ew_mat34 *const model_view = &work->model_view;
     dequantise_at(p, model_view);
-    int error = ew_mat34_mul(model_view, &geometry->scene.node_view, model_view);
-    if (!error) error = use_material(scene, u16_at(p + 6), geometry->raster);
-    if (error) return error;
-    error = ew_transform_set(&geometry->transform, &geometry->scene.projection, model_view,
-                             &geometry->scene.viewport);
-    if (error) return error;
-    ew_mesh *const mesh = &geometry->scene.mesh;
+    int error = ew_mat34_mul(model_view, &work->node_view, model_view);
+    return error ? error : ew_transform_set(transform, &work->projection, model_view, &work->viewport);
+}
+
+static void primitive_mesh(const ew_scene *scene, const uint8_t *p, ew_mesh *mesh)
+{
     mesh->vertices = vertices_at(scene, p);
-    mesh->screen = geometry->scene.vertices;
+    mesh->screen = NULL;
     mesh->colours = NULL;
     mesh->indices = indices_at(scene, p);
     mesh->index_count = u32_at(p + 12);
     mesh->uv_fraction_bits = p[36];
+}
+
+/* Makes material, transform and mesh ready for a primitive, with its vertices on the screen. */
+static EW_OWN_FRAME int prepare_primitive(const ew_scene *scene, uint32_t number, ew_geometry *geometry)
+{
+    const uint8_t *p = record(scene, EW_SECTION_PRIM, number);
+    int error = primitive_transform(p, &geometry->scene, &geometry->transform);
+    if (!error) error = use_material(scene, u16_at(p + 6), geometry->raster);
+    if (error) return error;
+    ew_mesh *const mesh = &geometry->scene.mesh;
+    primitive_mesh(scene, p, mesh);
+    mesh->screen = geometry->scene.vertices;
     ew_transform_vertices(&geometry->transform, mesh->vertices, u16_at(p + 4), geometry->scene.vertices);
     return EW_OK;
+}
+
+uint32_t ew_scene_object_count(const ew_scene *scene)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < scene->section[EW_SECTION_NODE].count; i++) {
+        count += u16_at(record(scene, EW_SECTION_NODE, i) + 6);
+    }
+    return count;
+}
+
+static EW_OWN_FRAME int make_object(const ew_scene *scene, uint32_t number, ew_scene_work *work, ew_object *object)
+{
+    const uint8_t *p = record(scene, EW_SECTION_PRIM, number);
+    int error = primitive_transform(p, work, &object->transform);
+    if (error) return error;
+    primitive_mesh(scene, p, &object->mesh);
+    object->vertex_count = u16_at(p + 4);
+    ew_scene_get_material(scene, u16_at(p + 6), &object->material, &object->texture);
+    return EW_OK;
+}
+
+int ew_scene_objects(const ew_scene *scene, const ew_scene_camera *camera, const ew_mat34 *world,
+                     const ew_viewport *viewport, ew_geometry *geometry, ew_object *objects)
+{
+    ew_scene_work *work = &geometry->scene;
+    int error = set_projection(&work->projection, camera, viewport);
+    work->viewport = *viewport;
+    for (uint32_t i = 0; i < scene->section[EW_SECTION_NODE].count && !error; i++) {
+        const uint8_t *node = record(scene, EW_SECTION_NODE, i);
+        work->primitive = u16_at(node + 4);
+        work->left = u16_at(node + 6);
+        if (work->left) error = ew_mat34_mul(&work->node_view, &camera->view, &world[i]);
+        for (; work->left && !error; work->left--) error = make_object(scene, work->primitive++, work, objects++);
+    }
+    return error;
 }
 
 int32_t ew_scene_draw(const ew_scene *scene, const ew_scene_camera *camera, const ew_mat34 *world,

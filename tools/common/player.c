@@ -20,6 +20,11 @@ struct ew_player {
     ew_geometry geometry;
     uint32_t time_ms;
     int32_t drawn;
+    unsigned rows, active; /* of bands, 0: none */
+    ew_object *objects;
+    uint8_t *memory;
+    size_t memory_bytes;
+    ew_picture_counts counts;
 };
 
 /* A baked scene is for a chip; a file beyond this is something else. */
@@ -100,6 +105,8 @@ void ew_player_close(ew_player *p)
     free(p->target.colour);
     free(p->target.depth);
     free(p->scratch);
+    free(p->objects);
+    free(p->memory);
     free(p->world);
     free(p->bytes);
     free(p->path);
@@ -125,6 +132,41 @@ static int orbit(ew_player *p, double angle)
     return error;
 }
 
+int ew_player_use_bands(ew_player *p, unsigned rows, unsigned active)
+{
+    const uint32_t count = ew_scene_object_count(&p->scene);
+    p->rows = rows < p->target.height ? rows : p->target.height;
+    p->active = active;
+    free(p->objects);
+    p->objects = calloc(count ? count : 1, sizeof *p->objects);
+    return p->objects ? 0 : complain(p, "cannot draw in bands", strerror(ENOMEM));
+}
+
+/* A finished band goes where the whole picture is. */
+static void take_band(void *user, const ew_target *band)
+{
+    const ew_player *p = user;
+    const size_t at = (size_t)band->first_row * p->target.stride, bytes = (size_t)band->height * band->stride * sizeof(uint16_t);
+    memcpy((uint16_t *)p->target.colour + at, band->colour, bytes);
+    memcpy(p->target.depth + at, band->depth, bytes);
+}
+
+static int draw_in_bands(ew_player *p, const ew_viewport *whole)
+{
+    const uint16_t width = p->target.width, height = p->target.height;
+    const ew_picture picture = { .width = width, .height = height, .buffers = 1, .rows = (uint16_t)p->rows, .end_row = height,
+                                 .background = EW_PLAYER_BACKGROUND, .scissor = { 0, 0, width, height },
+                                 .band = take_band, .user = p };
+    const uint32_t count = ew_scene_object_count(&p->scene);
+    int error = ew_scene_objects(&p->scene, &p->camera, p->world, whole, &p->geometry, p->objects);
+    if (error) return error;
+    p->memory_bytes = ew_picture_bytes(&picture, p->objects, count, p->active);
+    free(p->memory);
+    p->memory = malloc(p->memory_bytes);
+    if (!p->memory || !p->memory_bytes) return EW_ERR_ROOM;
+    return ew_picture_draw(&picture, p->objects, count, &p->geometry, p->memory, p->memory_bytes, &p->counts);
+}
+
 int ew_player_draw(ew_player *p, unsigned i, unsigned n, double fps)
 {
     int error = EW_OK;
@@ -138,8 +180,12 @@ int ew_player_draw(ew_player *p, unsigned i, unsigned n, double fps)
     }
     if (!error) error = ew_scene_pose(&p->scene, p->time_ms, p->world);
     if (error) return complain(p, "cannot pose the scene", ew_error_text(error));
-    ew_raster_clear(&p->raster, EW_PLAYER_BACKGROUND);
     const ew_viewport whole = { 0, 0, p->target.width, p->target.height };
+    if (p->rows) {
+        error = draw_in_bands(p, &whole);
+        return error ? complain(p, "cannot draw the scene in bands", ew_error_text(error)) : 0;
+    }
+    ew_raster_clear(&p->raster, EW_PLAYER_BACKGROUND);
     p->drawn = ew_scene_draw(&p->scene, &p->camera, p->world, &whole, &p->geometry, p->scratch);
     if (p->drawn < 0) return complain(p, "cannot draw the scene", ew_error_text(p->drawn));
     return 0;
@@ -150,3 +196,8 @@ const ew_scene *ew_player_scene(const ew_player *p) { return &p->scene; }
 const ew_scene_camera *ew_player_camera(const ew_player *p) { return &p->camera; }
 uint32_t ew_player_time_ms(const ew_player *p) { return p->time_ms; }
 int32_t ew_player_drawn(const ew_player *p) { return p->drawn; }
+size_t ew_player_memory(const ew_player *p, ew_picture_counts *counts)
+{
+    *counts = p->counts;
+    return p->memory_bytes;
+}

@@ -6,6 +6,7 @@
  * it is built with EW_TRACE = 1. */
 #include "cases.h"
 #include "edgewalk/geometry.h"
+#include "edgewalk/picture.h"
 #include "edgewalk/scene.h"
 #include "scene_data.h"
 
@@ -20,6 +21,49 @@ static ew_mat34 world[BENCH_MOST_NODES];
 static ew_raster raster;
 static ew_geometry geometry;
 static ew_scene scene;
+
+/* ---- in less memory ---- */
+
+enum { MOST_OBJECTS = BENCH_MOST_NODES, MODE_MEMORY = 600000 };
+static ew_object objects[MOST_OBJECTS];
+static uint32_t object_count;
+static ew_picture picture;
+static ew_picture_counts counts;
+static size_t mode_bytes;
+static uint8_t mode_memory[MODE_MEMORY];
+static const bench_mode *mode; /* NULL: by the layers below */
+
+static void make_object(const bench_scene *s, const ew_material *material)
+{
+    objects[0].mesh = (ew_mesh){ s->vertices, NULL, NULL, s->indices, s->index_count, 4 };
+    objects[0].vertex_count = s->vertex_count;
+    objects[0].material = *material;
+    bench_view(&objects[0].transform, W);
+    object_count = 1;
+}
+
+static int make_objects(const ew_material *method)
+{
+    const ew_viewport whole = { 0, 0, W, H };
+    ew_scene_camera camera;
+    ew_scene_get_camera(&scene, &camera);
+    int error = ew_scene_pose(&scene, BENCH_TIME_MS, world);
+    if (!error) error = ew_scene_objects(&scene, &camera, world, &whole, &geometry, objects);
+    object_count = ew_scene_object_count(&scene);
+    for (uint32_t i = 0; i < object_count; i++) {
+        ew_material *m = &objects[i].material;
+        if (m->texture) m->rung = method->rung, m->tolerance = method->tolerance;
+    }
+    return error;
+}
+
+static int32_t draw_mode(const bench_scene *s, const ew_material *material)
+{
+    int error = EW_OK;
+    if (s->file) error = make_objects(material);
+    else make_object(s, material);
+    return error ? error : ew_picture_draw(&picture, objects, object_count, &geometry, mode_memory, mode_bytes, &counts);
+}
 
 /* Counted from its first instruction to the first of bench_end. */
 __attribute__((noinline, noclone)) int32_t bench_draw(const bench_scene *s, const ew_material *material);
@@ -73,15 +117,16 @@ static int32_t draw_baked(const ew_material *method)
 
 int32_t bench_draw(const bench_scene *s, const ew_material *material)
 {
+    if (mode) return draw_mode(s, material);
     if (s->file) return draw_baked(material);
     return draw_mesh(s->vertices, s->vertex_count, s->indices, s->index_count, 4);
 }
 void bench_end(void) { __asm__ volatile(""); }
 
-static uint32_t hash(void)
+#define START UINT32_C(2166136261) /* FNV-1a over 16-bit units */
+static uint32_t hash(uint32_t h, const uint16_t *c, const uint16_t *z, int pixels)
 {
-    uint32_t h = 2166136261u; /* FNV-1a over 16-bit units */
-    for (int i = 0; i < W * H; i++) h = (((h ^ colour[i]) * 16777619u) ^ depth[i]) * 16777619u;
+    for (int i = 0; i < pixels; i++) h = (((h ^ c[i]) * 16777619u) ^ z[i]) * 16777619u;
     return h;
 }
 
@@ -114,7 +159,69 @@ static int run(const bench_scene *s, const bench_method *method, uint16_t tolera
     if (!error) error = bench_draw(s, &material) < 0;
     bench_end();
     if (error) bench_line("cannot draw a scene\n");
-    else print_hash(hash());
+    else print_hash(hash(START, colour, depth, W * H));
+    return error != 0;
+}
+
+static uint32_t band_hash;
+static void no_band(void *user, const ew_target *band) { (void)user, (void)band; }
+static void hash_band(void *user, const ew_target *band)
+{
+    (void)user;
+    band_hash = hash(band_hash, band->colour, band->depth, W * band->height);
+}
+
+static void print_decimal(uint32_t n)
+{
+    char text[12], *at = text + sizeof text - 1;
+    *at = '\0';
+    do *--at = (char)('0' + n % 10); while ((n /= 10) > 0);
+    *--at = ' ';
+    bench_line(at);
+}
+
+/* `memory`, then bytes of everything but the scene and its objects, bytes of these, and what
+ * ew_picture_counts has; vertices and triangles of the scene. */
+static void print_memory(void)
+{
+    uint32_t triangles = 0, vertices = 0;
+    for (uint32_t i = 0; i < object_count; i++) {
+        triangles += objects[i].mesh.index_count / 3;
+        vertices += objects[i].vertex_count;
+    }
+    const uint32_t figures[] = { (uint32_t)(mode_bytes + sizeof raster + sizeof geometry), (uint32_t)(object_count * sizeof *objects),
+                                 counts.most_active, counts.set_up, counts.again, counts.transformed, triangles, vertices };
+    bench_line("memory");
+    for (unsigned i = 0; i < sizeof figures / sizeof *figures; i++) print_decimal(figures[i]);
+    bench_line("\n");
+}
+
+/* With room for as many triangles as are active at a time. */
+static int run_mode(const bench_scene *s, const bench_mode *m)
+{
+    const ew_texture texture = { .texels = bench_texture, .width = 256, .height = 256 };
+    const ew_material material = { .texture = &texture, .tolerance = BENCH_MODE_TOLERANCE, .rung = EW_RUNG_AUTO };
+    const ew_picture p = { .width = W, .height = H, .rows = m->rows, .buffers = 1, .end_row = H, .background = BACKGROUND,
+                           .scissor = { 0, 0, W, H }, .band = hash_band };
+    picture = p;
+    mode = m;
+    ew_geometry_init(&geometry, &raster);
+    int error = s->file ? ew_scene_open(&scene, s->file, s->file_bytes) : EW_OK;
+    if (!error && s->file && ew_scene_object_count(&scene) > MOST_OBJECTS) error = EW_ERR_RANGE;
+    mode_bytes = sizeof mode_memory;
+    if (!error) error = draw_mode(s, &material);
+    const uint32_t active = counts.most_active;
+    mode_bytes = ew_picture_bytes(&picture, objects, object_count, active);
+    band_hash = START;
+    if (!error) error = draw_mode(s, &material);
+    picture.band = no_band;
+    if (!error) error = bench_draw(s, &material);
+    bench_end();
+    mode = NULL;
+    counts.most_active = active;
+    if (error) bench_line("cannot draw a scene in bands\n");
+    else print_hash(band_hash);
+    if (!error) print_memory();
     return error != 0;
 }
 
@@ -125,6 +232,11 @@ static int run_all(void)
     for (int s = 0; s < bench_scene_count; s++) {
         for (int i = 0; bench_case(i, &method, &tolerance); i++) {
             if (run(&bench_scenes[s], method, tolerance)) return 1;
+        }
+    }
+    for (int s = 0; s < bench_scene_count; s++) {
+        for (int i = 0; i < BENCH_MODES; i++) {
+            if (run_mode(&bench_scenes[s], &bench_modes[i])) return 1;
         }
     }
     return 0;
@@ -156,14 +268,21 @@ static int list(void)
 {
     const bench_method *method;
     uint16_t tolerance;
+    static long of_scene[16];
     quiet = 1;
-    for (int s = 0; s < bench_scene_count; s++) {
+    for (int s = 0; s < bench_scene_count && s < 16; s++) {
         for (int i = 0; bench_case(i, &method, &tolerance); i++) {
             if (i == 0) {
                 fragments = 0;
                 if (run(&bench_scenes[s], method, tolerance)) return 1;
+                of_scene[s] = fragments;
             }
             printf("%s,%s,%g,%ld\n", bench_scenes[s].name, method->name, tolerance / 16.0, fragments);
+        }
+    }
+    for (int s = 0; s < bench_scene_count && s < 16; s++) {
+        for (int i = 0; i < BENCH_MODES; i++) {
+            printf("%s,%s,%g,%ld\n", bench_scenes[s].name, bench_modes[i].name, BENCH_MODE_TOLERANCE / 16.0, of_scene[s]);
         }
     }
     return 0;

@@ -38,6 +38,18 @@ enum { BENCH_METHODS = sizeof bench_methods / sizeof *bench_methods };
 static const uint16_t bench_tolerances[] = { 0, 1, 2, 4, 8, 16, 32 };
 enum { BENCH_TOLERANCES = sizeof bench_tolerances / sizeof *bench_tolerances };
 
+/* How the same pictures are drawn in less memory, with rung auto at BENCH_MODE_TOLERANCE: cases behind
+ * all others. They clear, too. */
+typedef struct bench_mode {
+    const char *name;
+    uint16_t rows; /* of a band */
+} bench_mode;
+
+static const bench_mode bench_modes[] = {
+    { "at-once", 240 }, { "bands-32", 32 }, { "bands-16", 16 }, { "bands-8", 8 }, { "bands-4", 4 }, { "line", 1 },
+};
+enum { BENCH_MODES = sizeof bench_modes / sizeof *bench_modes, BENCH_MODE_TOLERANCE = 4 };
+
 /* Of baked scenes, whose camera is used as it is. */
 enum { BENCH_WIDTH = 320, BENCH_HEIGHT = 240, BENCH_TIME_MS = 1000 };
 

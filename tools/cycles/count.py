@@ -27,8 +27,11 @@ DEFAULT_BITS = 8
 
 # One picture: what was drawn and by which method (tolerance in px, a string), the fragments of the scene.
 Case = namedtuple("Case", "scene method tolerance fragments")
-# What was counted of it: instructions, (low, typical, high) cycles or None, the picture's hash.
-Count = namedtuple("Count", "instructions cycles picture")
+# What was counted of it: instructions, (low, typical, high) cycles or None, the picture's hash, and of
+# pictures in bands a Memory.
+Count = namedtuple("Count", "instructions cycles picture memory")
+Memory = namedtuple("Memory", "bytes objects_bytes active set_up again transformed triangles vertices")
+MODES = {"at-once": 240, "bands-32": 32, "bands-16": 16, "bands-8": 8, "bands-4": 4, "line": 1}  # rows of a band
 
 
 class Failed(Exception):
@@ -49,6 +52,12 @@ def tools_prefix(target):
 def list_cases(build):
     lines = run([os.path.join(build, "list"), "--list"]).split()
     return [Case(scene, method, tolerance, int(n)) for scene, method, tolerance, n in (line.split(",") for line in lines)]
+
+
+def printed(text):
+    """(hash, Memory or None) of each picture that an image prints."""
+    lines = re.findall(r"^([0-9a-f]{8})\n(?:memory((?: \d+)+)\n)?", text, re.M)
+    return [(picture, Memory(*map(int, figures.split())) if figures else None) for picture, figures in lines]
 
 
 # ---- host ----
@@ -78,10 +87,10 @@ def count_host(build, bits):
     image, out = (os.path.join(build, str(bits), name) for name in ("bench-host", "callgrind"))
     for old in glob.glob(out + ".*"):
         os.unlink(old)
-    pictures = run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", "--toggle-collect=bench_draw",
-                    "--dump-after=bench_draw", image]).split()
+    pictures = printed(run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", "--toggle-collect=bench_draw",
+                            "--dump-after=bench_draw", image]))
     dumps = sorted(glob.glob(out + ".*"), key=lambda name: int(name.rsplit(".", 1)[1]))
-    counts = [Count(outside_libc(dump), None, picture) for dump, picture in zip(dumps, pictures)]
+    counts = [Count(outside_libc(dump), None, *picture) for dump, picture in zip(dumps, pictures)]
     for dump in [*dumps, out]:
         if os.path.exists(dump):
             os.unlink(dump)
@@ -116,9 +125,9 @@ def count_emulated(build, bits, target):
                           stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True, check=False)
     if done.returncode != 0:
         raise Failed(f"{EMULATORS[target][0]}: {image}: status {done.returncode}: {done.stderr.strip()[-400:]}")
-    pictures = re.findall(r"^[0-9a-f]{8}$", done.stderr, re.M)
     cycles = model.Model(target, tools_prefix(target) + "objdump", image)
-    counts = [Count(n, cycles.cycles(blocks, edges), picture) for (n, blocks, edges), picture in zip(regions(out), pictures)]
+    counts = [Count(n, cycles.cycles(blocks, edges), *picture)
+              for (n, blocks, edges), picture in zip(regions(out), printed(done.stderr))]
     os.unlink(out)
     return counts
 
@@ -129,6 +138,47 @@ def count(build, bits, target, cases):
     if len(counts) != len(cases):
         raise Failed(f"{target}: {len(counts)} counts for {len(cases)} cases")
     return counts
+
+
+# ---- memory ----
+
+MEMORY_COLUMNS = ["target", "scene", "mode", "rows", "ram_bytes", "goal_bytes", "objects_bytes", "instructions", "of_at_once",
+                  "cycles_typical", "active", "set_up", "set_up_again", "transformed", "triangles", "vertices", "notes"]
+
+
+def goal_bytes(mode, m):
+    """What a 320 x 240 picture in RGB565 with depth may take beside the scene."""
+    if mode == "line":
+        return 4096 + 112 * m.active + 4 * m.triangles + 2 * m.vertices
+    return 12288 + 16 * m.vertices if mode == "bands-8" else "na"
+
+
+def memory_rows(cases, counts):
+    """RAM against instructions of every picture in bands; counts: {target: [Count]}."""
+    rows = []
+    for target, of_target in counts.items():
+        at_once = {case.scene: c.instructions for case, c in zip(cases, of_target) if case.method == "at-once"}
+        for case, c in zip(cases, of_target):
+            if case.method not in MODES:
+                continue
+            m, goal, notes = c.memory, goal_bytes(case.method, c.memory), []
+            if goal == "na":
+                notes.append("goal: none for this height")
+            elif case.method == "bands-8":
+                notes.append("goal: without the 4 bytes for each triangle-band reference")
+            if not c.cycles:
+                notes.append("cycles: no timing table for the host's processor")
+            rows.append([target, case.scene, case.method, MODES[case.method], m.bytes, goal, m.objects_bytes, c.instructions,
+                         f"{c.instructions / at_once[case.scene]:.3f}", c.cycles[1] if c.cycles else "na", m.active, m.set_up,
+                         m.again, m.transformed, m.triangles, m.vertices, "; ".join(notes)])
+    return rows
+
+
+def write_memory(path, rows):
+    with open(path, "w", newline="", encoding="utf-8") as f:
+        out = csv.writer(f)
+        out.writerow(MEMORY_COLUMNS)
+        out.writerows(rows)
 
 
 # ---- command line ----
@@ -161,6 +211,7 @@ def arguments(description):
 def main():
     parser = arguments("Counts instructions and models cycles per fragment.")
     parser.add_argument("--csv")
+    parser.add_argument("--memory", help="CSV file: RAM against instructions of pictures in bands")
     args = parser.parse_args()
     cases = list_cases(args.build)
     counts = {target: count(args.build, args.bits, target, cases) for target in args.targets}
@@ -172,6 +223,8 @@ def main():
             for target, of_target in counts.items():
                 for case, c in zip(cases, of_target):
                     out.writerow([target, *case, c.instructions, *(c.cycles or ["na"] * 3)])
+    if args.memory:
+        write_memory(args.memory, memory_rows(cases, counts))
     print_table(cases, counts)
 
 

@@ -47,7 +47,7 @@ count check-counts update-counts:
 	@$(MAKE) --no-print-directory -j2 $@-run
 count-run: $(call bench_images,$(COUNT_BITS))
 	@mkdir -p build/report
-	@$(COUNT)count.py --build $(C) --bits $(COUNT_BITS) --csv build/report/counts.csv $(COUNT_TARGETS)
+	@$(COUNT)count.py --build $(C) --bits $(COUNT_BITS) --csv build/report/counts.csv --memory build/report/memory.csv $(COUNT_TARGETS)
 check-counts-run update-counts-run: $(call bench_images,$(COUNT_BITS))
 	@$(COUNT)baseline.py $(firstword $(subst -, ,$@)) --build $(C) --bits $(COUNT_BITS) --baseline tools/cycles/baseline.csv $(COUNT_TARGETS)
 .PHONY: count check-counts update-counts count-run check-counts-run update-counts-run

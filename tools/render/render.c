@@ -18,14 +18,29 @@ struct options {
     ew_picture_options picture;
     const char *output;
     int animate;
+    unsigned rows, active;
 };
 
 static const struct argp_option option_table[] = {
     { "output", 'o', "FILE", 0, "PNG file to write (frame.png). For several frames its name is numbered: "
                                 "frame-0000.png, frame-0001.png ...", 0 },
     { "animation", 'a', NULL, 0, "Write all frames into the one FILE, as an animated PNG", 0 },
+    { "rows", 'r', "N", 0, "Draw in bands of N rows, 1 is line by line: the same picture in less memory", 0 },
+    { "active", 'A', "N", 0, "With --rows: memory for N triangles that reach from band to band (64)", 0 },
     { 0 }
 };
+
+/* A number of an option, 0 to `most`. */
+static unsigned number(struct argp_state *state, const char *option, const char *text, unsigned long least, unsigned long most)
+{
+    char *end;
+    errno = 0;
+    const unsigned long n = strtoul(text, &end, 10);
+    if (*text < '0' || *text > '9' || *end || errno || n < least || n > most) {
+        argp_error(state, "--%s: '%s' is not a whole number from %lu to %lu", option, text, least, most);
+    }
+    return (unsigned)n;
+}
 
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
@@ -34,6 +49,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_INIT: state->child_inputs[0] = &o->picture; break;
     case 'o': o->output = arg; break;
     case 'a': o->animate = 1; break;
+    case 'r': o->rows = number(state, "rows", arg, 1, 4096); break;
+    case 'A': o->active = number(state, "active", arg, 0, 1000000); break;
     default: return ARGP_ERR_UNKNOWN;
     }
     return 0;
@@ -82,7 +99,7 @@ static int render(const struct options *o, ew_player *player)
 
 int main(int argc, char **argv)
 {
-    struct options o = { EW_PICTURE_DEFAULTS, "frame.png", 0 };
+    struct options o = { EW_PICTURE_DEFAULTS, "frame.png", 0, 0, 64 };
     const struct argp_child children[] = { { &ew_picture_argp, 0, NULL, 0 }, { 0 } };
     const struct argp argp = { option_table, parse, NULL,
                                "Draws a baked scene with the fixed-point core into PNG files. A scene with an "
@@ -95,8 +112,13 @@ int main(int argc, char **argv)
 
     ew_player *player = ew_player_open(tool, o.picture.scene, o.picture.width, o.picture.height);
     if (!player) return 1;
-    int failed = render(&o, player);
-    if (!failed) {
+    int failed = (o.rows && ew_player_use_bands(player, o.rows, o.active)) || render(&o, player);
+    if (!failed && o.rows) {
+        ew_picture_counts c;
+        const size_t bytes = ew_player_memory(player, &c);
+        printf("%s: bands of %u rows in %zu bytes, %u triangles active at most, %u of %u set-ups for want of room\n", o.output,
+               o.rows, bytes, (unsigned)c.most_active, (unsigned)c.again, (unsigned)c.set_up);
+    } else if (!failed) {
         const ew_picture_options *p = &o.picture;
         printf("%s: %u frame%s of %ux%u, %d triangles in the last\n", o.output, p->frames, p->frames == 1 ? "" : "s",
                p->width, p->height, (int)ew_player_drawn(player));

@@ -44,8 +44,8 @@ def judge(build, bits, scenes):
 
 
 def measure(args, progress):
-    """Rows of speed_accuracy for every size of the table."""
-    cases, rows = count.list_cases(args.build), []
+    """Rows of speed_accuracy for every size of the table, and of memory for the first."""
+    cases, rows, memory = count.list_cases(args.build), [], []
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         names, jobs = {}, {}
         for bits in args.bits:
@@ -63,7 +63,8 @@ def measure(args, progress):
         for bits in args.bits:
             counts = {target: jobs[bits, target].result() for target in args.targets}
             rows += tables.speed_accuracy(bits, jobs[bits, "judged"].result(), cases, counts)
-    return rows
+            memory = memory or count.memory_rows(cases, counts)
+    return rows, memory
 
 
 def draw_pictures(args, bits):
@@ -84,10 +85,11 @@ def main():
     args = parser.parse_args()
     default = count.DEFAULT_BITS if count.DEFAULT_BITS in args.bits else args.bits[-1]
     progress = Progress(len(args.bits) * (len(args.targets) + 1) + 2)
-    rows = measure(args, progress)
+    rows, memory = measure(args, progress)
     auto = list(tables.auto_rows(rows))
     tables.write(os.path.join(args.out, "speed_accuracy.csv"), tables.COLUMNS, rows)
     tables.write(os.path.join(args.out, "cycles.csv"), tables.CYCLE_COLUMNS, tables.cycle_rows(rows))
+    count.write_memory(os.path.join(args.out, "memory.csv"), memory)
     tables.write(os.path.join(args.out, "auto.csv"), tables.AUTO_COLUMNS, auto)
     here = os.path.dirname(os.path.abspath(__file__))
     names = charts.draw(os.path.join(args.out, "charts"), rows, os.path.join(here, "references.csv"), default, progress.say)

@@ -1,0 +1,280 @@
+/* The memory modes: bands of any height, in any memory from the least on, are one picture. */
+#include "cases.h"
+
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "edgewalk/picture.h"
+#include "pictures.h"
+
+enum { OBJECTS = 4, VERTICES = 48, INDICES = 3 * 60, W = PICTURE_WIDTH, H = PICTURE_HEIGHT };
+
+static struct {
+    ew_picture picture;
+    ew_object object[OBJECTS];
+    ew_vertex16 vertex[OBJECTS][VERTICES];
+    ew_colour888 colours[OBJECTS][VERTICES];
+    uint16_t index[OBJECTS][INDICES];
+    ew_screen_vertex screen[OBJECTS][VERTICES];
+    uint32_t count;
+} scene;
+
+static picture whole;
+
+/* ---- random scenes ---- */
+
+static int32_t entry(int bits) { return (int32_t)pick(UINT32_C(2) << bits) - (INT32_C(1) << bits); }
+
+/* Vertices anywhere around the camera: near plane and guard band are crossed often. */
+static void random_transform(ew_transform *t)
+{
+    const ew_projection projection = { entry(15) + 98304, entry(15) + 98304, { INT32_C(1) << 29, -1 } };
+    do {
+        const ew_viewport viewport = pick(2) ? (ew_viewport){ 0, 0, scene.picture.width, scene.picture.height } :
+                                               (ew_viewport){ (int16_t)entry(5), (int16_t)entry(5), (uint16_t)(1 + pick(120)), (uint16_t)(1 + pick(90)) };
+        const int size = 14 + (int)pick(5);
+        ew_mat34 m;
+        for (int i = 0; i < 3; i++) {
+            const int32_t from = i == 2 ? -(int32_t)pick(pick(2) ? 3u << 18 : 3u << 15) : entry(size);
+            ew_row_from_q16_16(&m.row[i], entry(size), entry(size), entry(size), from);
+        }
+        if (ew_transform_set(t, &projection, &m, &viewport) == EW_OK) return;
+    } while (1);
+}
+
+static void random_mesh(int i)
+{
+    ew_object *o = &scene.object[i];
+    o->vertex_count = 3 + pick(VERTICES - 2);
+    for (uint32_t v = 0; v < o->vertex_count; v++) {
+        ew_vertex16 *a = &scene.vertex[i][v];
+        a->x = (int16_t)test_random(), a->y = (int16_t)test_random(), a->z = (int16_t)test_random();
+        a->u = (int16_t)pick(4096), a->v = (int16_t)pick(4096);
+        scene.colours[i][v] = (ew_colour888){ (uint8_t)pick(256), (uint8_t)pick(256), (uint8_t)pick(256) };
+    }
+    const uint32_t triangles = pick(INDICES / 3 + 1), spread = 1 + pick(o->vertex_count);
+    for (uint32_t k = 0; k < 3 * triangles; k++) { /* neighbours in a strip, or anybody */
+        scene.index[i][k] = (uint16_t)((k / 3 + pick(spread)) % o->vertex_count);
+    }
+    o->mesh = (ew_mesh){ .vertices = scene.vertex[i], .colours = pick(2) ? scene.colours[i] : NULL, .indices = scene.index[i],
+                         .index_count = 3 * triangles, .uv_fraction_bits = (uint8_t)pick(9) };
+    ew_transform_vertices(&o->transform, scene.vertex[i], o->vertex_count, scene.screen[i]);
+    if (pick(3) == 0) o->mesh.screen = scene.screen[i];
+}
+
+static void random_scene(void)
+{
+    ew_target target;
+    random_target(&target);
+    ew_picture *p = &scene.picture;
+    memset(p, 0, sizeof *p);
+    p->width = target.width, p->height = target.height;
+    p->format = target.format, p->dither = target.dither;
+    p->visibility = target.depth ? EW_DEPTH_BUFFER : EW_DEPTH_NONE;
+    p->background = (uint16_t)test_random();
+    random_scissor(&p->scissor, &target);
+    p->end_row = p->height;
+    if (pick(3) == 0) p->fog_near = UINT32_C(1) << 31, p->fog_far = UINT32_C(1) << 27, p->fog_colour = (uint16_t)test_random();
+    if (pick(3) == 0) p->cost = &ew_cost_m3;
+    scene.count = pick(OBJECTS + 1);
+    for (uint32_t i = 0; i < scene.count; i++) {
+        ew_object *o = &scene.object[i];
+        random_transform(&o->transform);
+        random_mesh((int)i);
+        random_material(&o->material, &o->texture);
+        if (pick(3)) o->material.flags &= (uint8_t)~EW_DOUBLE_SIDED;
+    }
+}
+
+/* ---- the picture at once, by the layers below ---- */
+
+static uint32_t stride(void) { return (scene.picture.width + 7u) / 8u * 8u; }
+
+static int draw_whole(void)
+{
+    static ew_raster raster;
+    static ew_geometry geometry;
+    const ew_picture *p = &scene.picture;
+    const ew_target target = { .colour = whole.colour, .depth = p->visibility == EW_DEPTH_BUFFER ? whole.depth : NULL,
+                               .width = p->width, .height = p->height, .stride = (uint16_t)stride(), .format = p->format,
+                               .dither = p->dither };
+    assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
+    if (p->cost) assert_int_equal(ew_raster_set_cost(&raster, p->cost), EW_OK);
+    if (p->fog_near) assert_int_equal(ew_raster_set_fog(&raster, p->fog_colour, p->fog_near, p->fog_far), EW_OK);
+    memset(&whole, 0, sizeof whole);
+    ew_raster_clear(&raster, p->background);
+    assert_int_equal(ew_raster_set_scissor(&raster, &p->scissor), EW_OK);
+    ew_geometry_init(&geometry, &raster);
+    int drawn = 0;
+    for (uint32_t i = 0; i < scene.count; i++) {
+        ew_mesh mesh = scene.object[i].mesh;
+        mesh.screen = scene.screen[i];
+        assert_int_equal(ew_raster_set_material(&raster, &scene.object[i].material), EW_OK);
+        geometry.transform = scene.object[i].transform;
+        const int32_t result = ew_draw_triangles(&geometry, &mesh);
+        assert_true(result >= 0);
+        drawn += (int)result;
+    }
+    return drawn;
+}
+
+/* ---- the same in bands ---- */
+
+static const uint8_t bits_of[] = { 16, 16, 8, 8, 4, 1 };
+
+/* What a callback finds; the first pixel that differs. */
+typedef struct seen {
+    int next_row, wrong_x, wrong_y, wrong; /* -1: none */
+    void *last;
+    int buffers;
+} seen;
+
+static unsigned pixel_at(const void *memory, uint32_t row_pixels, uint32_t x, uint32_t y)
+{
+    const uint32_t bits = bits_of[scene.picture.format], at = (y * row_pixels + x) * bits;
+    const uint8_t *byte = (const uint8_t *)memory + at / 8;
+    if (bits == 16) return byte[0] | (unsigned)byte[1] << 8;
+    return (unsigned)(byte[0] >> (8 - bits - at % 8) & ((1 << bits) - 1));
+}
+
+static void compare(void *user, const ew_target *band)
+{
+    seen *s = user;
+    if (band->first_row != s->next_row) s->wrong = 2;
+    if (s->last && (s->buffers == 2) != (s->last != band->colour)) s->wrong = 3;
+    s->last = band->colour;
+    s->next_row = band->first_row + band->height;
+    for (uint32_t y = 0; y < band->height; y++) {
+        for (uint32_t x = 0; x < band->width; x++) {
+            const uint32_t in_whole = band->first_row + y;
+            int same = pixel_at(band->colour, band->stride, x, y) == pixel_at(whole.colour, stride(), x, in_whole);
+            if (band->depth) same &= band->depth[y * band->stride + x] == whole.depth[in_whole * stride() + x];
+            if (!same && !s->wrong) s->wrong = 1, s->wrong_x = (int)x, s->wrong_y = (int)in_whole;
+        }
+    }
+}
+
+typedef struct context {
+    ew_raster raster;
+    ew_geometry geometry;
+    seen seen;
+    ew_picture picture;
+    ew_picture_counts counts;
+    size_t bytes;
+    int result;
+} context;
+
+/* Draws into memory of just that size: the sanitizers see every byte beyond. */
+static void *draw(void *user)
+{
+    context *c = user;
+    uint8_t *memory = malloc(c->bytes + 1);
+    if (!memory) abort();
+    memset(memory, 0x5A, c->bytes + 1);
+    c->seen = (seen){ .next_row = c->picture.first_row, .buffers = c->picture.buffers };
+    c->picture.band = compare;
+    c->picture.user = &c->seen;
+    ew_geometry_init(&c->geometry, &c->raster);
+    c->result = ew_picture_draw(&c->picture, scene.object, scene.count, &c->geometry, memory, c->bytes, &c->counts);
+    if (memory[c->bytes] != 0x5A) c->seen.wrong = 4;
+    free(memory);
+    return NULL;
+}
+
+static void check(const context *c)
+{
+    assert_int_equal(c->result, EW_OK);
+    assert_int_equal(c->seen.next_row, c->picture.end_row);
+    if (c->seen.wrong) fail_msg("kind %d, pixel %d,%d", c->seen.wrong, c->seen.wrong_x, c->seen.wrong_y);
+}
+
+static void random_memory(context *c)
+{
+    const size_t least = ew_picture_least(&c->picture, scene.object, scene.count);
+    assert_true(least > 0);
+    c->bytes = least + (pick(3) == 0 ? 0 : pick(3) ? pick(3000) : pick(60000));
+}
+
+static void any_band_any_memory(void **state)
+{
+    (void)state;
+    static context c;
+    long drawn = 0, count = 0, again = 0, active = 0, refused = 0;
+    for (cases k = cases_of("modes", 6000, 300000); cases_next(&k); count++) {
+        random_scene();
+        c.picture = scene.picture;
+        c.picture.buffers = (uint8_t)(1 + pick(2));
+        c.picture.rows = (uint16_t)(pick(2) ? 1 : 1 + pick(c.picture.height));
+        random_memory(&c);
+        test_context("EW_CASE=%ld, %dx%d, bands of %d, %zu bytes", k.number, c.picture.width, c.picture.height, c.picture.rows, c.bytes);
+        drawn += draw_whole();
+        draw(&c);
+        check(&c);
+        again += c.counts.again, active += c.counts.most_active;
+        c.bytes = ew_picture_least(&c.picture, scene.object, scene.count) - 1;
+        draw(&c);
+        refused += c.result == EW_ERR_ROOM;
+        assert_int_equal(c.result, EW_ERR_ROOM);
+    }
+    cases_figure("modes", "one picture", count, drawn, 0, (double)again, "set-ups for want of room");
+    assert_true((drawn > 4 * count && again > drawn && active > count && refused == count) || cases_alone());
+}
+
+/* With room for all no triangle is set up twice, and no vertex transformed more than twice. */
+static void enough_memory(void **state)
+{
+    (void)state;
+    static context c;
+    long set_up = 0;
+    for (cases k = cases_of("modes, enough", 1000, 50000); cases_next(&k);) {
+        random_scene();
+        c.picture = scene.picture;
+        c.picture.buffers = 1;
+        c.picture.rows = (uint16_t)(1 + pick(c.picture.height));
+        c.bytes = ew_picture_least(&c.picture, scene.object, scene.count) + 400000;
+        test_context("EW_CASE=%ld, bands of %d", k.number, c.picture.rows);
+        draw_whole();
+        draw(&c);
+        check(&c);
+        assert_int_equal(c.counts.again, 0);
+        uint32_t vertices = 0;
+        for (uint32_t i = 0; i < scene.count; i++) vertices += scene.object[i].mesh.screen ? 0 : scene.object[i].vertex_count;
+        assert_true(c.counts.transformed <= 2 * vertices);
+        set_up += c.counts.set_up;
+    }
+    assert_true(set_up > 5000 || cases_alone());
+}
+
+/* Two contexts, two threads, different bands of the same objects. */
+static void two_threads(void **state)
+{
+    (void)state;
+    static context c[2];
+    for (cases k = cases_of("modes, threads", 1000, 30000); cases_next(&k);) {
+        random_scene();
+        if (scene.picture.height < 2) continue;
+        const uint16_t border = (uint16_t)(1 + pick(scene.picture.height - 1u));
+        for (int i = 0; i < 2; i++) {
+            c[i].picture = scene.picture;
+            c[i].picture.buffers = (uint8_t)(1 + pick(2));
+            c[i].picture.first_row = i ? border : 0;
+            c[i].picture.end_row = i ? scene.picture.height : border;
+            c[i].picture.rows = (uint16_t)(1 + pick(scene.picture.height));
+            random_memory(&c[i]);
+        }
+        test_context("EW_CASE=%ld, border %d, bands of %d and %d", k.number, border, c[0].picture.rows, c[1].picture.rows);
+        draw_whole();
+        pthread_t thread[2];
+        for (int i = 0; i < 2; i++) assert_int_equal(pthread_create(&thread[i], NULL, draw, &c[i]), 0);
+        for (int i = 0; i < 2; i++) assert_int_equal(pthread_join(thread[i], NULL), 0);
+        for (int i = 0; i < 2; i++) check(&c[i]);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = { TEST(any_band_any_memory), TEST(enough_memory), TEST(two_threads) };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

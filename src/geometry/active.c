@@ -1,0 +1,348 @@
+/* Triangles that reach over more bands than one: kept where there is room, else set up again. */
+#include "picture.h"
+
+/* ---- places ---- */
+
+enum { PLACE_BYTES = 8 };
+
+static ew_kept *kept_at(const ew_picture_work *w, ew_place place)
+{
+    return (ew_kept *)(void *)(w->places + (size_t)place * PLACE_BYTES);
+}
+
+static void init_places(ew_picture_work *w, size_t bytes)
+{
+    const size_t places = bytes / PLACE_BYTES < EW_NO_PLACE ? bytes / PLACE_BYTES : EW_NO_PLACE - 1u;
+    w->kept = w->gaps = EW_NO_PLACE;
+    if (places == 0) return;
+    w->gaps = 0;
+    kept_at(w, 0)->gap.places = (uint16_t)places;
+    kept_at(w, 0)->gap.next = EW_NO_PLACE;
+}
+
+void ew_active_init(ew_picture_work *w)
+{
+    enum { SHARE = 8 }; /* of it for vertices: most of a slot for each triangle of 112 bytes */
+    uint8_t *at = (uint8_t *)(w->entries + (w->entry_count + 1u) / 2u * 2u); /* aligned to 8 */
+    const size_t rest = (size_t)(w->end_of_memory - at);
+    w->slots = (ew_slot *)(void *)at;
+    w->slot_count = w->vertices;
+    if (w->slot_count > rest / SHARE / sizeof *w->slots) w->slot_count = (uint32_t)(rest / SHARE / sizeof *w->slots);
+    if (w->slot_count > UINT16_MAX) w->slot_count = UINT16_MAX;
+    w->hand = 0;
+    for (uint32_t i = 0; i < w->slot_count; i++) {
+        w->slots[i].vertex.y = -EW_GUARD_PX * 4096; /* above everything */
+        w->slots[i].number = EW_NO_VERTEX;
+    }
+    w->places = (uint8_t *)(w->slots + (w->slot_count + 1u) / 2u * 2u);
+    init_places(w, (size_t)(w->end_of_memory - w->places));
+}
+
+/* The first gap that is large enough gives its end. */
+static ew_place take_places(ew_picture_work *w, uint16_t places)
+{
+    for (ew_place *at = &w->gaps; *at != EW_NO_PLACE; at = &kept_at(w, *at)->gap.next) {
+        ew_kept *gap = kept_at(w, *at);
+        if (gap->gap.places < places) continue;
+        const ew_place taken = (ew_place)(*at + gap->gap.places - places);
+        gap->gap.places = (uint16_t)(gap->gap.places - places);
+        if (gap->gap.places == 0) *at = gap->gap.next;
+        return taken;
+    }
+    return EW_NO_PLACE;
+}
+
+/* Gaps stand in order, and no two touch. */
+static void give_places(ew_picture_work *w, ew_place place, uint16_t places)
+{
+    ew_kept *before = NULL, *gap = kept_at(w, place);
+    ew_place *at = &w->gaps;
+    ew_place before_place = 0;
+    while (*at != EW_NO_PLACE && *at < place) {
+        before_place = *at;
+        before = kept_at(w, *at);
+        at = &before->gap.next;
+    }
+    gap->gap.places = places;
+    gap->gap.next = *at;
+    *at = place;
+    if (gap->gap.next == place + places) {
+        const ew_kept *after = kept_at(w, gap->gap.next);
+        gap->gap.places = (uint16_t)(places + after->gap.places);
+        gap->gap.next = after->gap.next;
+    }
+    if (before && before_place + before->gap.places == place) {
+        before->gap.places = (uint16_t)(before->gap.places + gap->gap.places);
+        before->gap.next = gap->gap.next;
+    }
+}
+
+static uint16_t places_of(const ew_triangle *t) { return (uint16_t)(ew_active_bytes(t) / PLACE_BYTES); }
+
+/* Takes the kept triangle out that *link leads to. */
+static void drop(ew_picture_work *w, ew_place *link)
+{
+    const ew_place place = *link;
+    const ew_active *active = &kept_at(w, place)->active;
+    const uint16_t places = places_of(&active->triangle);
+    *link = active->next;
+    give_places(w, place, places);
+    w->active--;
+}
+
+/* Keeps the triangle that was begun, before the one that *link leads to. Returns where it leads on,
+ * or NULL where there is no room. */
+static ew_place *keep(ew_picture_work *w, ew_place *link)
+{
+    const ew_place place = take_places(w, places_of(&w->geometry->raster->work.triangle));
+    if (place == EW_NO_PLACE) return NULL;
+    ew_active *active = &kept_at(w, place)->active;
+    ew_raster_keep(w->geometry->raster, active);
+    active->number = w->number;
+    active->next = *link;
+    *link = place;
+    w->active++;
+    return &active->next;
+}
+
+/* ---- vertices ---- */
+
+static void take_slot(ew_picture_work *w, uint32_t number, const ew_screen_vertex *v)
+{
+    enum { TRIES = 16 };
+    const uint32_t tries = w->slot_count < TRIES ? w->slot_count : TRIES;
+    for (uint32_t i = 0; i < tries; i++) {
+        if (++w->hand >= w->slot_count) w->hand = 0;
+        ew_slot *slot = &w->slots[w->hand];
+        /* no triangle begins below its own vertices */
+        if (ew_row_of(slot->vertex.y) >= w->top) continue;
+        slot->vertex = *v;
+        slot->number = number;
+        /* those of vertices without a place begin in the first band there is */
+        if (v->outcode & (EW_OUT_NEAR | EW_OUT_GUARD)) slot->vertex.y = w->top * 4096;
+        w->map[number] = (uint16_t)w->hand;
+        return;
+    }
+}
+
+/* Corner k of the triangle at hand, to w->screen. */
+static EW_OWN_FRAME void fetch(ew_picture_work *w, int k)
+{
+    const ew_object *object = w->at;
+    const uint16_t vertex = object->mesh.indices[(size_t)(w->number - w->first_triangle) * 3u + (unsigned)k];
+    ew_screen_vertex *out = &w->screen[k];
+    if (object->mesh.screen) {
+        *out = object->mesh.screen[vertex];
+        return;
+    }
+    const uint32_t number = w->first_vertex + vertex;
+    const uint16_t at = w->map[number];
+    if (at < w->slot_count && w->slots[at].number == number) {
+        *out = w->slots[at].vertex;
+        return;
+    }
+    ew_transform_vertices(&object->transform, &object->mesh.vertices[vertex], 1, out);
+    w->counts->transformed++;
+    take_slot(w, number, out);
+}
+
+/* ---- triangles ---- */
+
+/* Makes a triangle and its object the ones at hand: numbers grow within a band. Returns EW_OK or an
+ * error of the raster's. */
+static EW_OWN_FRAME int go_to(ew_picture_work *w, uint32_t number)
+{
+    const ew_object *object = &w->objects[w->object];
+    while (number - w->first_triangle >= object->mesh.index_count / 3u) {
+        w->first_triangle += object->mesh.index_count / 3u;
+        if (!object->mesh.screen) w->first_vertex += object->vertex_count;
+        object = &w->objects[++w->object];
+    }
+    w->number = number;
+    w->at = object;
+    w->behind = w->first_triangle + object->mesh.index_count / 3u;
+    if (w->used == w->object) return EW_OK;
+    w->used = w->object;
+    return ew_raster_set_material(w->geometry->raster, &object->material);
+}
+
+/* What becomes of a triangle in the band at hand: there is nothing to be drawn; it is kept, to be drawn next;
+ * what the raster has set up is to be drawn, and that was all or the rest is late; the
+ * triangles of a fan are to be drawn, one after the other, and are late, too. */
+enum { DONE, KEPT, DRAW, DRAW_LATE, DRAW_FAN };
+
+static int begin(ew_picture_work *w)
+{
+    ew_raster_vertex *const v = w->geometry->corner;
+    const int result = ew_raster_begin(w->geometry->raster, &v[0], &v[1], &v[2], (uint16_t)w->end);
+    w->counts->set_up += result > 0;
+    return result;
+}
+
+/* Each triangle of a clipped one's fan: all of them are kept, or none. */
+static EW_OWN_FRAME int keep_fan(ew_picture_work *w)
+{
+    ew_place *const link = w->kept_link, *to = link;
+    const ew_place behind = *link;
+    while (ew_clip_next(w->geometry)) {
+        const int result = begin(w);
+        if (result < 0) return result;
+        if (result == 0) continue;
+        to = keep(w, to);
+        if (to) continue;
+        while (*link != behind) drop(w, link);
+        w->geometry->clipped_next = 0;
+        return DRAW_FAN;
+    }
+    return *link == behind ? DONE : KEPT;
+}
+
+/* Sets the next triangle of the fan up: 1, 0 behind the last, or an error. */
+static EW_OWN_FRAME int next_of_fan(ew_picture_work *w)
+{
+    while (ew_clip_next(w->geometry)) {
+        const int result = begin(w);
+        if (result) return result;
+    }
+    return 0;
+}
+
+static EW_OWN_FRAME int clipped(ew_picture_work *w, const uint16_t *index)
+{
+    for (int k = 0; k < 3; k++) w->geometry->clip_screen[k] = &w->screen[k];
+    w->geometry->transform = w->at->transform;
+    ew_clip_triangle(w->geometry, &w->at->mesh, index);
+    return keep_fan(w);
+}
+
+/* Sets the triangle at hand up, with its corners in w->screen; kept ones stand at *kept_link then.
+ * Returns one of the above or an error. */
+static EW_OWN_FRAME int start(ew_picture_work *w)
+{
+    const ew_object *object = w->at;
+    const ew_mesh *mesh = &object->mesh;
+    const uint16_t *index = mesh->indices + (size_t)(w->number - w->first_triangle) * 3u;
+    const ew_screen_vertex *const s = w->screen;
+    if (ew_is_hidden(&s[0], &s[1], &s[2], object->material.flags & EW_DOUBLE_SIDED)) return DONE;
+    if ((s[0].outcode | s[1].outcode | s[2].outcode) & (EW_OUT_NEAR | EW_OUT_GUARD)) return clipped(w, index);
+
+    const int32_t uv_unit = (int32_t)1 << (12 - mesh->uv_fraction_bits);
+    ew_raster_vertex *const v = w->geometry->corner;
+    for (int k = 0; k < 3; k++) {
+        ew_corner_from(&v[k], &mesh->vertices[index[k]], &s[k], uv_unit);
+        v[k].colour = mesh->colours ? mesh->colours[index[k]] : ew_white;
+    }
+    const int result = begin(w);
+    if (result <= 0) return result;
+    if (ew_raster_begun_end(w->geometry->raster) <= w->bottom) return DRAW;
+    return keep(w, w->kept_link) ? KEPT : DRAW_LATE;
+}
+
+/* ---- a band ---- */
+
+/* The number of the next late triangle. */
+static uint32_t number_of_late(const ew_picture_work *w)
+{
+    return w->late_next < w->late_count ? w->entries[w->late_next] : EW_NO_TRIANGLE;
+}
+
+/* That of the next triangle that begins in the band. */
+static uint32_t number_of_next(const ew_picture_work *w)
+{
+    if (w->next == w->entry_count) return EW_NO_TRIANGLE;
+    const uint32_t entry = w->entries[w->next];
+    return entry >> EW_NUMBER_BITS == w->band ? entry & EW_NUMBER_MASK : EW_NO_TRIANGLE;
+}
+
+/* Takes a late triangle, or else the next to begin, out of its list. */
+static EW_OWN_FRAME int take(ew_picture_work *w, uint32_t number, int is_late)
+{
+    if (is_late) {
+        w->late_next++;
+        w->active--;
+        w->counts->again++;
+    } else {
+        w->next++;
+    }
+    return go_to(w, number);
+}
+
+/* The triangle at hand is late, behind those that are already: there is room where it came from. */
+static void put_late(ew_picture_work *w, int is_late)
+{
+    if (is_late) w->entries[w->late_left++] = w->number;
+    else w->entries[w->late_begun + w->late_new++] = w->number;
+    w->active++;
+}
+
+static void start_late(ew_picture_work *w)
+{
+    w->late_next = w->late_left = w->late_new = 0;
+    w->late_begun = w->next;
+}
+
+/* Those that the band has added, among the others, by number. */
+static void merge_late(ew_picture_work *w)
+{
+    uint32_t *entries = w->entries;
+    w->late_count = w->late_left;
+    for (uint32_t i = 0; i < w->late_new; i++) {
+        const uint32_t number = entries[w->late_begun + i];
+        uint32_t at = w->late_count++;
+        for (; at > 0 && entries[at - 1u] > number; at--) entries[at] = entries[at - 1u];
+        entries[at] = number;
+    }
+}
+
+/* Draws what was kept of triangles before `number`. Returns EW_OK or an error. */
+static EW_OWN_FRAME int draw_kept(ew_picture_work *w, uint32_t number)
+{
+    ew_place *link = w->kept_link;
+    ew_raster *raster = w->geometry->raster;
+    while (*link != EW_NO_PLACE) {
+        ew_active *active = &kept_at(w, *link)->active;
+        if (active->number >= number) break;
+        if (active->number >= w->behind) {
+            const int error = go_to(w, active->number);
+            if (error) return error;
+        }
+        ew_raster_draw_active(raster, active);
+        if (active->row < active->end) link = &active->next;
+        else drop(w, link);
+    }
+    w->kept_link = link;
+    return EW_OK;
+}
+
+/* Starts the next triangle before which no kept one comes, `number`. */
+static EW_OWN_FRAME int start_next(ew_picture_work *w, uint32_t number, int is_late)
+{
+    const int error = take(w, number, is_late);
+    if (error) return error;
+    for (int i = 0; i < 3; i++) fetch(w, i);
+    const int result = start(w);
+    if (result >= DRAW_LATE) put_late(w, is_late);
+    return result;
+}
+
+int ew_draw_band(ew_picture_work *w)
+{
+    int result = EW_OK;
+    w->kept_link = &w->kept;
+    start_late(w);
+    w->object = w->first_triangle = w->first_vertex = w->behind = 0;
+    while (result >= 0) {
+        const uint32_t late = number_of_late(w), next = number_of_next(w), number = late < next ? late : next;
+        result = draw_kept(w, number);
+        if (number == EW_NO_TRIANGLE || result < 0) break;
+        result = start_next(w, number, late < next);
+        if (result == DRAW_FAN) {
+            while ((result = next_of_fan(w)) > 0) ew_raster_draw_begun(w->geometry->raster);
+        } else if (result >= DRAW) {
+            ew_raster_draw_begun(w->geometry->raster);
+        }
+    }
+    merge_late(w);
+    if (w->active > w->counts->most_active) w->counts->most_active = w->active;
+    return result < 0 ? result : EW_OK;
+}

@@ -1,0 +1,360 @@
+/* A whole picture: the memory that it takes, triangles sorted by band, one band after the other. */
+#include "picture.h"
+
+
+/* ---- memory ---- */
+
+enum { ALIGNMENT = 8 };
+
+/* What a picture needs, in the order in which it lies in memory. */
+typedef struct memory_plan {
+    uint32_t stride, rows, bands;  /* rows of a band, and how many bands there are            */
+    uint32_t triangles, vertices;  /* to be linked and mapped, 0 where there is one band       */
+    uint32_t screen;               /* vertices to be kept while an object is drawn, likewise    */
+    uint32_t colour, depth;        /* bytes of a band                                         */
+    uint32_t least;                /* with what alignment may take; below 2^28                 */
+} memory_plan;
+
+static uint32_t aligned(uint32_t bytes) { return (bytes + ALIGNMENT - 1u) / ALIGNMENT * ALIGNMENT; }
+
+static int is_valid(const ew_picture *p)
+{
+    return p->width >= 1 && p->width <= EW_TARGET_MAX && p->height >= 1 && p->height <= EW_TARGET_MAX &&
+           p->format <= EW_TARGET_MONO && p->visibility <= EW_DEPTH_NONE && p->buffers >= 1 && p->buffers <= 2 &&
+           p->rows >= 1 && p->rows <= p->height && p->first_row < p->end_row && p->end_row <= p->height &&
+           p->scissor.x0 <= p->scissor.x1 && p->scissor.y0 <= p->scissor.y1 && p->scissor.x1 <= p->width &&
+           p->scissor.y1 <= p->height && p->fog_far <= p->fog_near;
+}
+
+/* Returns 0 for what cannot be drawn. */
+static int count_objects(memory_plan *plan, const ew_object *objects, uint32_t count)
+{
+    uint32_t triangles = 0, vertices = 0, most = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t of_this = objects[i].mesh.index_count / 3u;
+        if (of_this >= EW_NO_TRIANGLE - triangles) return 0;
+        triangles += of_this;
+        if (objects[i].mesh.screen) continue;
+        if (objects[i].vertex_count > most) most = objects[i].vertex_count;
+        if (objects[i].vertex_count >= UINT32_C(0xFFFFFF) - vertices) return 0;
+        vertices += objects[i].vertex_count;
+    }
+    plan->triangles = plan->bands > 1 ? triangles : 0;
+    plan->vertices = plan->bands > 1 ? vertices : 0;
+    plan->screen = plan->bands > 1 ? 0 : most;
+    return 1;
+}
+
+/* Returns 0 for what cannot be drawn. */
+static int plan_init(memory_plan *plan, const ew_picture *picture, const ew_object *objects, uint32_t count)
+{
+    static const uint8_t log2_bits[] = { 4, 4, 3, 3, 2, 0 }; /* of a pixel, by format */
+    if (!is_valid(picture)) return 0;
+    const uint32_t all = (uint32_t)(picture->end_row - picture->first_row), bits = log2_bits[picture->format];
+    plan->stride = bits < 3 ? (picture->width + 7u) / 8u * 8u : picture->width; /* whole bytes */
+    plan->rows = picture->rows < all ? picture->rows : all;
+    plan->bands = (all + plan->rows - 1u) / plan->rows;
+    if (!count_objects(plan, objects, count)) return 0;
+    const uint32_t pixels = plan->stride * plan->rows; /* <= 2^24 */
+    plan->colour = aligned((pixels << bits) / 8u);
+    plan->depth = picture->visibility == EW_DEPTH_BUFFER ? aligned(pixels * 2u) : 0;
+    plan->least = ALIGNMENT - 1u + aligned(sizeof(ew_picture_work)) + plan->colour * picture->buffers + plan->depth +
+                  aligned(plan->screen * (uint32_t)sizeof(ew_screen_vertex)) + aligned(plan->triangles * 4u) +
+                  aligned(plan->vertices * 2u);
+    return sizeof(size_t) > 2 || plan->least <= UINT16_MAX;
+}
+
+size_t ew_picture_least(const ew_picture *picture, const ew_object *objects, uint32_t count)
+{
+    memory_plan plan;
+    return plan_init(&plan, picture, objects, count) ? (size_t)plan.least : 0;
+}
+
+size_t ew_picture_bytes(const ew_picture *picture, const ew_object *objects, uint32_t count, uint32_t active)
+{
+    enum { OF_ACTIVE = 112, AND = 448 };
+    memory_plan plan;
+    if (!plan_init(&plan, picture, objects, count)) return 0;
+    if (plan.bands == 1) return plan.least;
+    const uint32_t most = (uint32_t)(SIZE_MAX / 2u - plan.least - AND) / OF_ACTIVE;
+    return (size_t)plan.least + AND + (size_t)(active < most ? active : most) * OF_ACTIVE;
+}
+
+/* The first thing in the memory. */
+static ew_picture_work *work_in(void *memory)
+{
+    return (void *)((uint8_t *)memory + (ALIGNMENT - (uintptr_t)memory % ALIGNMENT) % ALIGNMENT);
+}
+
+/* Lays out the memory. */
+static ew_picture_work *work_init(const memory_plan *plan, const ew_picture *picture, void *memory, size_t bytes)
+{
+    ew_picture_work *w = work_in(memory);
+    uint8_t *at = (uint8_t *)w + aligned(sizeof *w), *const end = (uint8_t *)memory + bytes;
+    w->picture = picture;
+    w->rows = plan->rows, w->bands = plan->bands, w->stride = plan->stride;
+    w->colour = at;
+    w->colour_bytes = plan->colour;
+    at += plan->colour * picture->buffers;
+    w->depth = plan->depth ? (uint16_t *)(void *)at : NULL;
+    at += plan->depth;
+    w->slots = (ew_slot *)(void *)at; /* the vertices of an object, where there is one band */
+    at += aligned(plan->screen * (uint32_t)sizeof(ew_screen_vertex));
+    w->map = (uint16_t *)(void *)at;
+    w->vertices = plan->vertices;
+    at += aligned(plan->vertices * 2u);
+    w->entries = (uint32_t *)(void *)at;
+    w->rest = at + aligned(plan->triangles * 4u);
+    w->end_of_memory = end;
+    const ew_picture_counts none = { 0, 0, 0, 0 };
+    w->own_counts = none;
+    w->counts = &w->own_counts;
+    w->entry_count = w->next = w->late_count = w->active = 0;
+    return w;
+}
+
+/* ---- sorting ---- */
+
+/* What the map has of a vertex while triangles are sorted: the row that it may begin, within those
+ * that are drawn; that it has none; or nothing yet. */
+#define NEAR UINT16_C(0xFFFF)
+#define UNKNOWN UINT16_C(0xFFFE)
+#define NOT_YET UINT16_C(0xFFFD)
+
+static uint16_t row_in_map(const ew_picture_work *w, const ew_screen_vertex *v)
+{
+    if (v->outcode & EW_OUT_NEAR) return NEAR;
+    if (v->outcode & EW_OUT_GUARD) return UNKNOWN;
+    const int32_t row = ew_row_of(v->y);
+    return (uint16_t)(row < w->first ? w->first : row > w->end ? w->end : row);
+}
+
+/* The memory that triangles will be kept in holds vertices while they are sorted, each in the one
+ * slot that its number leads to. */
+static void init_sorting(ew_picture_work *w)
+{
+    uint32_t slots = (uint32_t)((size_t)(w->end_of_memory - w->rest) / sizeof *w->slots);
+    while (slots & (slots - 1u)) slots &= slots - 1u;
+    w->slots = (ew_slot *)(void *)w->rest;
+    w->slot_count = slots;
+    for (uint32_t i = 0; i < slots; i++) w->slots[i].number = EW_NO_VERTEX;
+    for (uint32_t i = 0; i < w->vertices; i++) w->map[i] = NOT_YET;
+}
+
+/* Transforms a vertex that no triangle had before, and others behind it, which are likely to come
+ * next. */
+static EW_OWN_FRAME void transform_some(ew_picture_work *w, const ew_object *object, uint32_t vertex)
+{
+    uint16_t *map = w->map + w->first_vertex;
+    uint32_t n = 1;
+    while (n < EW_BATCH && vertex + n < object->vertex_count && map[vertex + n] == NOT_YET) n++;
+    ew_transform_vertices(&object->transform, &object->mesh.vertices[vertex], n, w->screen);
+    w->counts->transformed += n;
+    for (uint32_t i = 0; i < n; i++, vertex++) {
+        const uint32_t number = w->first_vertex + vertex;
+        map[vertex] = row_in_map(w, &w->screen[i]);
+        if (!w->slot_count) continue;
+        ew_slot *slot = &w->slots[number & (w->slot_count - 1u)];
+        slot->vertex = w->screen[i];
+        slot->number = number;
+    }
+}
+
+/* Appends a triangle that begins on row `first` to the list. */
+static inline void append(ew_picture_work *w, uint32_t number, int32_t first)
+{
+    const uint32_t below = (uint32_t)(first - w->picture->first_row);
+    const uint32_t band = w->rows == 1 ? below : below / w->rows;
+    w->entries[w->entry_count++] = number | band << EW_NUMBER_BITS;
+}
+
+/* The row that a triangle begins in, from those of its corners, or -1 when it covers no row. */
+static inline int32_t first_row_of(const ew_picture_work *w, uint16_t a, uint16_t b, uint16_t c)
+{
+    uint16_t low = a < b ? a : b, high = a < b ? b : a;
+    if (c < low) low = c;
+    if (c > high) high = c;
+    if (high < NOT_YET) return low < high ? low : -1;
+    return low == NEAR || w->first >= w->end ? -1 : w->first;
+}
+
+/* Appends an object's triangles that may be seen, from w->number on. What hides them is looked at where
+ * their vertices are at hand; the rest is seen to when they begin. Returns a vertex that has to be
+ * transformed before it can go on, or EW_NO_VERTEX behind the last triangle. */
+static EW_OWN_FRAME uint32_t list_some(ew_picture_work *w, const ew_object *object)
+{
+    const ew_mesh *mesh = &object->mesh;
+    const uint16_t *index = mesh->indices + (size_t)(w->number - w->first_triangle) * 3u;
+    const uint16_t *const end = mesh->indices + mesh->index_count, *map = w->map + w->first_vertex;
+    const ew_slot *const slots = w->slots;
+    const uint32_t mask = w->slot_count - 1u, first_vertex = w->first_vertex;
+    const int both_sides = object->material.flags & EW_DOUBLE_SIDED;
+    for (; index < end; index += 3) {
+        const uint32_t a = index[0], b = index[1], c = index[2];
+        if (map[a] == NOT_YET || map[b] == NOT_YET || map[c] == NOT_YET) {
+            w->number = w->first_triangle + (uint32_t)(index - mesh->indices) / 3u;
+            return map[a] == NOT_YET ? a : map[b] == NOT_YET ? b : c;
+        }
+        const int32_t first = first_row_of(w, map[a], map[b], map[c]);
+        if (first < 0) continue;
+        if (mask != UINT32_MAX) {
+            const ew_slot *sa = &slots[(first_vertex + a) & mask], *sb = &slots[(first_vertex + b) & mask];
+            const ew_slot *sc = &slots[(first_vertex + c) & mask];
+            if (sa->number == first_vertex + a && sb->number == first_vertex + b && sc->number == first_vertex + c &&
+                ew_is_hidden(&sa->vertex, &sb->vertex, &sc->vertex, both_sides)) {
+                continue;
+            }
+        }
+        append(w, w->first_triangle + (uint32_t)(index - mesh->indices) / 3u, first);
+    }
+    return EW_NO_VERTEX;
+}
+
+/* The same where all vertices are on the screen already. */
+static EW_OWN_FRAME void list_transformed(ew_picture_work *w, const ew_object *object)
+{
+    const ew_mesh *mesh = &object->mesh;
+    const ew_screen_vertex *const screen = mesh->screen;
+    const int both_sides = object->material.flags & EW_DOUBLE_SIDED;
+    for (uint32_t i = 0; i < mesh->index_count; i += 3) {
+        const ew_screen_vertex *a = &screen[mesh->indices[i]], *b = &screen[mesh->indices[i + 1]], *c = &screen[mesh->indices[i + 2]];
+        const int32_t first = first_row_of(w, row_in_map(w, a), row_in_map(w, b), row_in_map(w, c));
+        if (first >= 0 && !ew_is_hidden(a, b, c, both_sides)) append(w, w->first_triangle + i / 3u, first);
+    }
+}
+
+/* D. L. Shell, "A high-speed sorting procedure", 1959; steps by D. E. Knuth: (3^k - 1) / 2. */
+static void sort_entries(uint32_t *entries, uint32_t count)
+{
+    uint32_t step = 1;
+    while (step < count / 3u) step = 3u * step + 1u;
+    for (; step > 0; step /= 3u) {
+        for (uint32_t i = step; i < count; i++) {
+            const uint32_t entry = entries[i];
+            uint32_t at = i;
+            for (; at >= step && entries[at - step] > entry; at -= step) entries[at] = entries[at - step];
+            entries[at] = entry;
+        }
+    }
+}
+
+/* Makes the list of triangles, and of what memory is left room for vertices and for kept ones. */
+static EW_OWN_FRAME void sort(ew_picture_work *w)
+{
+    init_sorting(w);
+    w->first_triangle = w->first_vertex = 0;
+    for (uint32_t i = 0; i < w->count; i++) {
+        const ew_object *object = &w->objects[i];
+        w->number = w->first_triangle;
+        if (object->mesh.screen) list_transformed(w, object);
+        else for (uint32_t vertex; (vertex = list_some(w, object)) != EW_NO_VERTEX;) transform_some(w, object, vertex);
+        w->first_triangle += object->mesh.index_count / 3u;
+        if (!object->mesh.screen) w->first_vertex += object->vertex_count;
+    }
+    sort_entries(w->entries, w->entry_count);
+    ew_active_init(w);
+}
+
+/* ---- drawing ---- */
+
+/* The next object of a picture that is drawn at once, where nothing has to be sorted: its mesh is ready
+ * in geometry->scene.mesh. Returns 0 behind the last and after an error. */
+static EW_OWN_FRAME int next_mesh(ew_picture_work *w, int *error)
+{
+    if (w->object == w->count) return 0;
+    const ew_object *object = &w->objects[w->object++];
+    ew_mesh *mesh = &w->geometry->scene.mesh;
+    *error = ew_raster_set_material(w->geometry->raster, &object->material);
+    if (*error) return 0;
+    w->geometry->transform = object->transform;
+    *mesh = object->mesh;
+    if (!mesh->screen) {
+        ew_screen_vertex *screen = (ew_screen_vertex *)(void *)w->slots;
+        ew_transform_vertices(&object->transform, mesh->vertices, object->vertex_count, screen);
+        w->counts->transformed += object->vertex_count;
+        mesh->screen = screen;
+    }
+    return 1;
+}
+
+/* Goes to the band at hand and clears it; the scissor is what of the picture's lies in it. Returns
+ * whether that is anything. */
+static EW_OWN_FRAME int start_band(ew_picture_work *w)
+{
+    ew_raster *raster = w->geometry->raster;
+    const ew_picture *p = w->picture;
+    const int32_t row = p->first_row + (int32_t)(w->band * w->rows), left = p->end_row - row;
+    const int32_t end = (int32_t)w->rows < left ? row + (int32_t)w->rows : p->end_row;
+    uint8_t *colour = w->colour + (p->buffers > 1 && w->band & 1u ? w->colour_bytes : 0);
+    ew_raster_set_rows(raster, colour, w->depth, (uint16_t)row, (uint16_t)(end - row));
+    ew_rect rect = { 0, (uint16_t)row, p->width, (uint16_t)end };
+    ew_raster_set_scissor(raster, &rect);
+    ew_raster_clear(raster, p->background);
+    w->top = row > w->first ? row : w->first;
+    w->bottom = end < w->end ? end : w->end;
+    if (w->top >= w->bottom) return 0;
+    rect.x0 = p->scissor.x0, rect.x1 = p->scissor.x1;
+    rect.y0 = (uint16_t)w->top, rect.y1 = (uint16_t)w->bottom;
+    ew_raster_set_scissor(raster, &rect);
+    return 1;
+}
+
+static EW_OWN_FRAME int init_raster(const ew_picture_work *w)
+{
+    const ew_picture *p = w->picture;
+    ew_raster *raster = w->geometry->raster;
+    const ew_target target = { .colour = w->colour, .depth = w->depth, .width = p->width, .height = (uint16_t)w->rows,
+                               .stride = (uint16_t)w->stride, .format = p->format, .dither = p->dither,
+                               .first_row = p->first_row };
+    int error = ew_raster_init(raster, &target);
+    if (!error && p->cost) error = ew_raster_set_cost(raster, p->cost);
+    if (!error && p->fog_near) error = ew_raster_set_fog(raster, p->fog_colour, p->fog_near, p->fog_far);
+    for (uint32_t i = 0; i < w->count && !error; i++) error = ew_raster_set_material(raster, &w->objects[i].material);
+    return error;
+}
+
+/* Makes everything ready in the memory. Returns EW_OK or an error. */
+static EW_OWN_FRAME int prepare(const ew_picture *picture, const ew_object *objects, uint32_t count, ew_geometry *geometry,
+                                void *memory, size_t bytes)
+{
+    memory_plan plan;
+    if (!plan_init(&plan, picture, objects, count)) return EW_ERR_ARGUMENT;
+    if (bytes < plan.least) return EW_ERR_ROOM;
+    ew_picture_work *w = work_init(&plan, picture, memory, bytes);
+    w->objects = objects;
+    w->count = count;
+    w->geometry = geometry;
+    w->object = w->band = 0;
+    w->used = UINT32_MAX;
+    w->first = picture->scissor.y0 > picture->first_row ? picture->scissor.y0 : picture->first_row;
+    w->end = picture->scissor.y1 < picture->end_row ? picture->scissor.y1 : picture->end_row;
+    return init_raster(w);
+}
+
+/* One band after the other, in the caller's frame: below this lie the deepest calls. */
+static inline int draw(ew_picture_work *w)
+{
+    int error = EW_OK;
+    if (w->bands > 1) sort(w);
+    for (; w->band < w->bands && error >= 0; w->band++) {
+        if (start_band(w)) {
+            if (w->bands > 1) error = ew_draw_band(w);
+            else while (error >= 0 && next_mesh(w, &error)) error = (int)ew_draw_triangles(w->geometry, &w->geometry->scene.mesh);
+        }
+        if (error >= 0) w->picture->band(w->picture->user, &w->geometry->raster->target);
+    }
+    return error < 0 ? error : EW_OK;
+}
+
+int ew_picture_draw(const ew_picture *picture, const ew_object *objects, uint32_t count, ew_geometry *geometry,
+                    void *memory, size_t bytes, ew_picture_counts *counts)
+{
+    const int error = prepare(picture, objects, count, geometry, memory, bytes);
+    if (error) return error;
+    ew_picture_work *w = work_in(memory);
+    if (counts) {
+        *counts = w->own_counts; /* zeros */
+        w->counts = counts;
+    }
+    return draw(w);
+}

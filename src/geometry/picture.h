@@ -1,0 +1,102 @@
+/* A picture while it is drawn (private to the geometry layer).
+ *
+ * All triangles that may be seen stand in a list sorted by the band that they begin in, then by
+ * number: their place in the order of drawing. A band draws, by number, those that begin in it and
+ * those that reach into it. Of the latter some were kept (active.c): set up, ready to go on. Those
+ * that found no room are late: set up again for each band. Merging the three by number is what
+ * makes the picture independent of bands.
+ */
+#ifndef EW_GEOMETRY_PICTURE_H
+#define EW_GEOMETRY_PICTURE_H
+
+#include "edgewalk/picture.h"
+#include "project.h"
+
+/* Entries of the list: a triangle's number, and above it the band that it begins in. */
+enum { EW_NUMBER_BITS = 20 };
+#define EW_NUMBER_MASK ((UINT32_C(1) << EW_NUMBER_BITS) - 1u)
+#define EW_NO_TRIANGLE EW_NUMBER_MASK
+#define EW_NO_VERTEX UINT32_MAX
+
+/* A place among the kept ones: 8 bytes each, or none. */
+typedef uint16_t ew_place;
+#define EW_NO_PLACE UINT16_C(0xFFFF)
+
+/* What stands in a place: a kept triangle, or a gap with the next one behind it. */
+typedef union ew_kept {
+    ew_active active;
+    struct {
+        uint16_t places;
+        ew_place next;
+    } gap;
+} ew_kept;
+
+/* A vertex that later triangles will need. */
+typedef struct ew_slot {
+    ew_screen_vertex vertex;
+    uint32_t number;
+} ew_slot;
+
+enum { EW_BATCH = 8 };
+
+typedef struct ew_picture_work {
+    const ew_picture *picture;
+    const ew_object *objects;
+    uint32_t count;
+    ew_geometry *geometry;
+    ew_picture_counts *counts, own_counts;
+    uint32_t rows, bands, stride;
+    uint32_t band;        /* the one at hand                                                */
+    int32_t first, end;   /* rows that triangles are drawn in                               */
+    int32_t top, bottom;  /* rows of the band at hand among them                            */
+    /* Memory. */
+    uint8_t *colour;
+    uint16_t *depth;
+    uint32_t colour_bytes; /* of one band                                                    */
+    uint16_t *map;        /* one for each vertex: its row, then the slot that may have it   */
+    uint32_t vertices;
+    uint32_t *entries;
+    uint8_t *rest, *end_of_memory; /* what lies behind all of this                            */
+    ew_slot *slots;
+    uint32_t slot_count, hand; /* hand: where a slot was taken last                         */
+    uint8_t *places;      /* multiples of 8 bytes                                           */
+    /* Lists. Late ones stand in the entries' place once these were taken: those of earlier bands
+     * first, then, from late_begun on, those that the band at hand has added. */
+    uint32_t entry_count, next;
+    uint32_t late_count, late_next, late_left; /* of earlier bands: read up to, left so far      */
+    uint32_t late_begun, late_new;
+    ew_place kept, gaps;
+    ew_place *kept_link;  /* what leads to the one that a band has come to                  */
+    uint32_t active;      /* how many are kept or late                                      */
+    /* The object at hand, by number, and the one whose material the raster has. */
+    uint32_t object, first_triangle, first_vertex, used;
+    const ew_object *at;
+    uint32_t behind;      /* the first triangle that is not the object's                    */
+    uint32_t number;      /* the triangle at hand, its corners in `screen`                  */
+    ew_screen_vertex screen[EW_BATCH];
+} ew_picture_work;
+
+/* The first row whose centre is at or below y: where a triangle may begin. */
+static inline int32_t ew_row_of(ew_q20_12 y)
+{
+    const int32_t half = 1 << (EW_SUBPIXEL_BITS - 1);
+    return EW_ASR(ew_snapped_from_q20_12(y) + half - 1, EW_SUBPIXEL_BITS);
+}
+
+/* Whether nothing of the triangle of three vertices can be seen. */
+static inline int ew_is_hidden(const ew_screen_vertex *a, const ew_screen_vertex *b, const ew_screen_vertex *c, int both_sides)
+{
+    const int any = a->outcode | b->outcode | c->outcode, all = a->outcode & b->outcode & c->outcode;
+    if (any & (EW_OUT_NEAR | EW_OUT_GUARD)) return all & ~EW_OUT_GUARD;
+    return all || (!both_sides && !ew_faces_the_eye(a, b, c));
+}
+
+/* ---- active.c ---- */
+
+/* Divides what memory the list leaves. */
+void ew_active_init(ew_picture_work *w);
+
+/* Draws what lies in the band at hand. Returns EW_OK or an error. */
+int ew_draw_band(ew_picture_work *w);
+
+#endif
