@@ -542,8 +542,7 @@ EW_NOINLINE void span_of_texture(ew_raster *raster, const ew_triangle *t, int32_
     }
 }
 
-/* Triangles with a texture, depth and nothing else: ew_walk_rows for the common case. */
-EW_NOINLINE int rows_of_texture(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
+int ew_rows_of_texture(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
 {
     ew_plane32 *p = t->plane.narrow;
     ew_linear *l = &raster->work.now.span.linear;
@@ -606,7 +605,7 @@ static void span_of_any(ew_raster *raster, int32_t x, int32_t y, int32_t n)
     }
 }
 
-EW_NOINLINE int rows_of_any(ew_raster *raster, int32_t row, int32_t end)
+int ew_rows_of_any(ew_raster *raster, int32_t row, int32_t end)
 {
     ew_triangle *t = &raster->work.triangle;
     ew_edge *edge = raster->work.edge;
@@ -622,9 +621,4 @@ EW_NOINLINE int rows_of_any(ew_raster *raster, int32_t row, int32_t end)
         planes_step(t, t->is_wide, t->attributes);
     }
     return reached;
-}
-
-int ew_walk_rows(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
-{
-    return t->is_quick ? rows_of_texture(raster, t, edge, row, end) : rows_of_any(raster, row, end);
 }

@@ -91,11 +91,16 @@ static int set_up(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_
     return 1;
 }
 
+/* Rows of work.triangle between two changes of edges. */
+EW_ALWAYS_INLINE int draw_some(ew_raster *raster, int32_t row, int32_t end)
+{
+    ew_triangle *t = &raster->work.triangle;
+    return t->is_quick ? ew_rows_of_texture(raster, t, raster->work.edge, row, end) : ew_rows_of_any(raster, row, end);
+}
+
 /* Draws the rows of work.triangle above `end`. */
 static int draw_rows(ew_raster *raster, int32_t end)
 {
-    ew_triangle *t = &raster->work.triangle;
-    ew_edge *edge = raster->work.edge;
     const ew_corners *k = &raster->work.corners;
     EW_KEEP_ORDER(k);
     const int32_t turn = smaller(k->turn, end);
@@ -103,11 +108,11 @@ static int draw_rows(ew_raster *raster, int32_t end)
     start_edge(raster, k->longest, k->top, k->bottom, k->first);
     if (k->first < turn) {
         start_edge(raster, !k->longest, k->top, k->middle, k->first);
-        reached |= ew_walk_rows(raster, t, edge, k->first, turn);
+        reached |= draw_some(raster, k->first, turn);
     }
     if (turn < end) {
         start_edge(raster, !k->longest, k->middle, k->bottom, turn);
-        reached |= ew_walk_rows(raster, t, edge, turn, end);
+        reached |= draw_some(raster, turn, end);
     }
     return reached;
 }
@@ -216,9 +221,9 @@ EW_NOINLINE int draw_part(ew_raster *raster, ew_active *active, int32_t end)
     const int32_t row = active->row;
     active->row = (uint16_t)end;
     if (row == active->turn) start_lowest_edge(active);
-    if (active->triangle.is_quick) return ew_walk_rows(raster, &active->triangle, active->edge, row, end);
+    if (active->triangle.is_quick) return ew_rows_of_texture(raster, &active->triangle, active->edge, row, end);
     copy_to_work(raster, active);
-    const int reached = ew_walk_rows(raster, &raster->work.triangle, raster->work.edge, row, end);
+    const int reached = ew_rows_of_any(raster, row, end);
     copy_from_work(active, raster);
     return reached;
 }
@@ -229,7 +234,7 @@ int ew_raster_draw_active(ew_raster *raster, ew_active *active)
     if (row >= end) return 0;
     if (active->triangle.is_quick && (row > turn || end <= turn)) {
         active->row = (uint16_t)end;
-        return ew_walk_rows(raster, &active->triangle, active->edge, row, end);
+        return ew_rows_of_texture(raster, &active->triangle, active->edge, row, end);
     }
     int reached = 0;
     if (row < turn && turn < end) reached = draw_part(raster, active, turn);

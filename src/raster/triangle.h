@@ -30,9 +30,10 @@ void ew_pixel_loop_init(ew_pixel_loop *loop, const ew_raster *raster);
  * or EW_ERR_RANGE. */
 int ew_setup(ew_raster *raster);
 
-/* Draws rows from `row` to below `end` of a triangle whose edges and planes stand on `row`, cut to
- * the scissor in x, and steps both. Unless it is quick, t and edge are those of raster->work.
- * Returns whether a pixel was reached. */
-int ew_walk_rows(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end);
+/* Draw rows from `row` to below `end` of a triangle whose edges and planes stand on `row`, cut to
+ * the scissor in x, and step both. Return whether a pixel was reached. The first is for quick
+ * triangles, the second for all, which must be raster->work's. */
+int ew_rows_of_texture(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end);
+int ew_rows_of_any(ew_raster *raster, int32_t row, int32_t end);
 
 #endif
