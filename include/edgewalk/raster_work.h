@@ -131,10 +131,11 @@ typedef struct ew_attribute_run {
     uint32_t shade[3], dshade[3];
 } ew_attribute_run;
 
-/* Where ew_fill_any goes on, and 1/z there. */
+/* Where ew_loop_fill or ew_fill_any goes on, and 1/z there. */
 typedef struct ew_position {
     uint16_t x, y;
     uint32_t w, dw;
+    uint8_t loop; /* ew_raster.loop where the piece lets it, else 0                        */
 } ew_position;
 
 /* What the pixel loop of arch.h reads; its machine code knows the order. */
@@ -155,7 +156,20 @@ typedef struct ew_packing {
     uint16_t x, y;            /* its position, for tests                                  */
 } ew_packing;
 
-/* ---- fills (fill.c, texture.c) ---- */
+/* ---- fills (loops.c, fill.c, texture.c) ---- */
+
+/* What the loops of loops.c need of a row, the texture and the triangle. */
+typedef struct ew_loop_work {
+    void *colour;              /* the row's first pixels                                   */
+    uint16_t *depth;           /* the same, or NULL                                        */
+    const uint8_t *thresholds; /* of the row's dither                                      */
+    const uint16_t *texels;
+    uint32_t columns, rows;    /* masks: of a column, of a row times the width             */
+    uint32_t u_origin, v_origin; /* added to u and v, texels with 20 bits of fraction      */
+    uint32_t key, turn;        /* 65,536: none; how far pixels are rotated                 */
+    uint8_t down, up;          /* shifts: of v to a row times the width, of u and v        */
+    uint8_t of_dither;         /* a shift that takes off what dither adds, or all          */
+} ew_loop_work;
 
 /* A run: a piece of a span over which everything is linear. Values belong to its first
  * pixel, steps lead to the next; sums wrap and are only meaningful inside the run. */
@@ -194,9 +208,9 @@ typedef struct ew_sampler {
     const uint8_t *texels;
     const uint8_t *mask; /* NULL: none                                                     */
     ew_axis u, v;
-    uint32_t sum[3];   /* of a pixel's texels, by their weights                             */
-    uint8_t weight[4];
-    uint16_t texel[3]; /* the colour of a texel, then of the pixel                          */
+    uint8_t weight[4]; /* of four texels                                                   */
+    uint16_t texel[3]; /* the colour of one of them                                        */
+    uint16_t level_colour[3]; /* of a pixel, on the second of two levels                   */
     uint16_t level, next_share; /* the level, and the share of the one behind it            */
     uint16_t row_bytes, mask_row_bytes; /* 4096 at most                                     */
     uint16_t share;    /* of 256: how far they take the place of what the piece has        */
@@ -216,6 +230,7 @@ typedef struct ew_span_work {
         struct {
             ew_attribute_run attributes;
             ew_position position;
+            ew_loop_work loop;
             ew_run run;
             ew_piece piece;
             ew_sampler sampler;

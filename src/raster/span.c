@@ -10,6 +10,7 @@
  */
 #include "arch.h"
 #include "fill.h"
+#include "loops.h"
 #include "triangle.h"
 
 
@@ -239,11 +240,9 @@ EW_NOINLINE void piece_of_texture(ew_packing *k, const ew_triangle *t, ew_linear
 /* A tangent may leave a shade's range: ew_fill_any clamps. */
 static void shade_run(ew_run *run, const ew_triangle *t, const ew_attribute_run *from)
 {
-    enum { DOWN = EW_FRACTION(EW_SHADE_BITS) - 16 };
     for (int i = 0; i < 3; i++) {
-        /* rounds to nearest where fill.c drops the fraction */
-        run->shade[i] = t->shade_origin[i] * 16 + 32768 + EW_ASR((int32_t)from->shade[i], DOWN);
-        run->dshade[i] = EW_ASR((int32_t)from->dshade[i], DOWN);
+        run->shade[i] = (int32_t)ew_light_at(t, from, i);
+        run->dshade[i] = (int32_t)ew_light_step(from, i);
     }
 }
 
@@ -351,8 +350,10 @@ static void piece_of_any(ew_raster *raster, int32_t n)
 {
     while (n > 0) {
         const int32_t m = next_of_any(raster, n);
-        make_run(raster, m);
-        ew_fill_any(raster, &raster->work.now.span.fill.any.run, m);
+        if (!ew_loop_fill(raster, m)) {
+            make_run(raster, m);
+            ew_fill_any(raster, &raster->work.now.span.fill.any.run, m);
+        }
         n -= m;
     }
 }
@@ -377,7 +378,8 @@ EW_NOINLINE int start_piece(ew_raster *raster, int32_t x, int32_t y, int32_t n)
     EW_KEEP_ORDER(t);
     const int down = (int)smaller(t->w_lead + l->align, 31);
     const uint32_t w = depth_of(l->w, down), dw = depth_step(l->dw, down);
-    if (is_plain(t, w, dw, n)) {
+    const int plain = is_plain(t, w, dw, n);
+    if (plain && raster->loop == LOOP_TEXTURED) {
         const size_t offset = (size_t)(y - raster->target.first_row) * raster->target.stride + (size_t)x;
         ew_packing *k = &raster->work.now.span.fill.packing;
         EW_KEEP_ORDER(k);
@@ -391,6 +393,8 @@ EW_NOINLINE int start_piece(ew_raster *raster, int32_t x, int32_t y, int32_t n)
     ew_position *at = &raster->work.now.span.fill.any.position;
     at->x = (uint16_t)x, at->y = (uint16_t)y;
     at->w = w, at->dw = dw;
+    at->loop = plain ? raster->loop : LOOP_NONE;
+    if (plain) ew_loop_start(raster, (uint32_t)y);
     return 0;
 }
 
