@@ -669,6 +669,11 @@ static void triangles_and_clears(void **state)
 
 /* ---- loops ---- */
 
+/* Which are in the build. */
+#define X(name, has) EW_WITH_LOOP_##name,
+static const uint8_t with[LOOP_COUNT] = { 1, 1, LOOPS(X) };
+#undef X
+
 /* What the loops of loops.c are for, and what is nearly that. */
 static void likely_loop(fill_case *c)
 {
@@ -679,8 +684,8 @@ static void likely_loop(fill_case *c)
     if (!chance(8)) c->target.format = formats[below(3)], c->target.stride = (uint16_t)((c->target.stride + 1) & ~1);
     if (c->target.format != EW_TARGET_GREY4) c->target.dither = (uint8_t)chance(8);
     do t->width = (uint16_t)(1u << below(12)), t->height = (uint16_t)(1u << below(12));
-    while ((uint32_t)t->width * t->height > TEXELS_MOST / 2);
-    t->levels = 0, t->format = chance(8) ? t->format : EW_TEXTURE_RGB565;
+    while ((uint32_t)t->width * t->height > TEXELS_MOST / 4);
+    t->levels = t->width > 1 && chance(8) ? 2 : 0, t->format = chance(8) ? t->format : EW_TEXTURE_RGB565;
     if (!chance(8)) t->wrap_u = t->wrap_v = 0;
     t->key = ((const uint16_t *)(const void *)texels)[below(16)];
     m->flags = flags[below(4)];
@@ -689,7 +694,7 @@ static void likely_loop(fill_case *c)
     m->filter = (uint8_t)(chance(20) ? 2 : below(2));
     m->blend = (uint8_t)chance(20);
     m->rung = (uint8_t)(chance(2) ? EW_RUNG_AUTO : below(EW_RUNG_COUNT));
-    m->tolerance = (uint16_t)below(chance(2) ? 5 : 64);
+    m->tolerance = (uint16_t)(chance(4) ? EW_TOLERANCE_MAX : below(chance(2) ? 5 : 64)); /* light may leave its range */
     fit_to_build(c);
 }
 
@@ -706,9 +711,6 @@ static void likely_corner(ew_raster_vertex *v, int first_row, uint32_t w_bits, u
 static void loops_and_the_generic_path_agree(void **state)
 {
     (void)state;
-#define X(name, has) EW_WITH_LOOP_##name,
-    static const uint8_t with[LOOP_COUNT] = { 1, 1, LOOPS(X) };
-#undef X
     int drawn_with[LOOP_COUNT] = { 0 };
     fill_case c;
     random_memory();
@@ -750,6 +752,38 @@ static void loops_and_the_generic_path_agree(void **state)
     for (int k = LOOP_FLAT; k < LOOP_COUNT; k++) {
         if (getenv("EW_PRINT")) printf("# loop %d: %d triangles\n", k, drawn_with[k]);
         assert_true((drawn_with[k] > 200 / SHARE) == with[k]);
+    }
+}
+
+/* What goes through which loop: were another one chosen, the pixels would be the same. */
+static void loops_are_chosen(void **state)
+{
+    (void)state;
+    enum { NO_DEPTH = EW_NO_DEPTH_TEST | EW_NO_DEPTH_WRITE, WITHOUT = 1, SWAPPED = EW_TARGET_RGB565_SWAPPED };
+    static const struct {
+        uint8_t untextured, flags, filter, format, dither, no_buffer, loop;
+    } cases[] = {
+        { .loop = LOOP_TEXTURED }, { .flags = EW_DOUBLE_SIDED, .dither = 1, .loop = LOOP_TEXTURED },
+        { WITHOUT, .loop = LOOP_FLAT }, { WITHOUT, EW_COLOUR_KEY | EW_ALPHA_MASK, .format = SWAPPED, .loop = LOOP_FLAT },
+        { WITHOUT, EW_SHADED, .loop = LOOP_GOURAUD }, { WITHOUT, EW_SHADED, .dither = 1, .loop = LOOP_NONE },
+        { .flags = NO_DEPTH, .loop = LOOP_NO_DEPTH }, { .no_buffer = 1, .loop = LOOP_NO_DEPTH },
+        { .flags = EW_NO_DEPTH_TEST, .loop = LOOP_NONE }, { .flags = EW_NO_DEPTH_WRITE, .loop = LOOP_NONE },
+        { .flags = EW_COLOUR_KEY, .loop = LOOP_KEYED }, { .format = SWAPPED, .loop = LOOP_KEYED },
+        { .flags = EW_SHADED, .loop = LOOP_LIT }, { .flags = EW_SHADED | EW_FOG, .loop = LOOP_NONE },
+        { .filter = EW_FILTER_BILINEAR, .loop = LOOP_BILINEAR }, { .filter = EW_FILTER_BILINEAR, .dither = 1, .loop = LOOP_NONE },
+        { .format = EW_TARGET_GREY4, .dither = 1, .loop = LOOP_GREY4 }, { .format = EW_TARGET_GREY8, .loop = LOOP_NONE },
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const ew_texture texture = { .texels = texels, .width = 16, .height = 8, .mask = mask };
+        const ew_material m = { .texture = cases[i].untextured ? NULL : &texture, .flags = cases[i].flags, .filter = cases[i].filter };
+        const ew_target target = { .colour = drawn.colour, .depth = cases[i].no_buffer ? NULL : drawn.depth, .width = 8, .height = 4,
+                                   .stride = 8, .format = cases[i].format, .dither = cases[i].dither };
+        ew_raster raster;
+        test_context("case %zu", i);
+        if (target_needs_more(&target) || material_needs_more(&m)) continue;
+        assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
+        assert_int_equal(ew_raster_set_material(&raster, &m), EW_OK);
+        assert_int_equal(raster.loop, with[cases[i].loop] ? cases[i].loop : LOOP_NONE);
     }
 }
 
@@ -853,6 +887,7 @@ int main(void)
         TEST(fog_is_linear),
 #endif
         TEST(triangles_and_clears),
+        TEST(loops_are_chosen),
         TEST(loops_and_the_generic_path_agree),
         TEST(arguments_are_checked),
     };

@@ -116,7 +116,8 @@ EW_NOINLINE void put_565(const ew_target *target, const ew_piece *piece)
 
 void ew_target_put(const ew_target *target, const ew_piece *piece, int blend)
 {
-    if (target->format <= EW_TARGET_RGB565_SWAPPED && !target->dither && !blend) {
+    if ((!EW_WITH_TARGET_FORMATS || target->format <= EW_TARGET_RGB565_SWAPPED) && !(EW_WITH_DITHER && target->dither) &&
+        !(EW_WITH_BLENDS && blend)) {
         put_565(target, piece);
         return;
     }
