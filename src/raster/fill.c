@@ -1,5 +1,5 @@
-/* The generic span path: every combination of material, texture and target. span.c has
- * loops of its own for the common ones; both draw the same pixels.
+/* The generic span path: every combination of material, texture and target. What is drawn most
+ * has loops of its own, in span.c and loops.c; they draw the same pixels.
  *
  * A run is drawn in pieces of EW_PIECE pixels. A piece goes through one step after the other
  * - depth test, texture, depth write, light, fog, target - each a loop over its live pixels,

@@ -14,8 +14,8 @@
 
 static int is_simple(const ew_texture *t)
 {
-    return t->format == EW_TEXTURE_RGB565 && !t->wrap_u && !t->wrap_v && t->levels <= 1 && !(t->width & (t->width - 1u)) &&
-           !(t->height & (t->height - 1u));
+    return t->format == EW_TEXTURE_RGB565 && !t->wrap_u && !t->wrap_v && t->levels <= 1 &&
+           !(t->width & (t->width - 1u)) && !(t->height & (t->height - 1u));
 }
 
 /* What a loop must have for the context's target and material; -1: none will do. */
@@ -46,8 +46,10 @@ uint8_t ew_loop_of(const ew_raster *raster)
     const int widths = raster->log2_width, heights = raster->log2_height;
     int has = needed(raster);
     if (has == (HAS_DEPTH | HAS_TEXTURE)) {
-        if (raster->target.format == EW_TARGET_RGB565 && widths >= 1 && heights >= 1 && widths + heights <= 16) return LOOP_TEXTURED;
-        has |= HAS_KEY;
+        if (raster->target.format == EW_TARGET_RGB565 && widths >= 1 && heights >= 1 && widths + heights <= 16) {
+            return LOOP_TEXTURED;
+        }
+        has |= HAS_KEY; /* but none has it */
     }
     switch (has) {
 #define X(name, what) case what: return EW_WITH_LOOP_##name ? LOOP_##name : LOOP_NONE;
@@ -91,7 +93,8 @@ EW_ALWAYS_INLINE uint32_t bilinear(const place *p)
     const uint16_t *row = row_at(p, p->v), *row_below = row_at(p, p->v + TEXEL);
     const uint32_t column = column_at(p, p->u), right = column_at(p, p->u + TEXEL);
     const uint32_t fu = p->u >> (FRACTION - 5) & 31u, fv = p->v >> (FRACTION - 5) & 31u;
-    const uint32_t a = spread(row[column]), b = spread(row[right]), c = spread(row_below[column]), d = spread(row_below[right]);
+    const uint32_t a = spread(row[column]), b = spread(row[right]);
+    const uint32_t c = spread(row_below[column]), d = spread(row_below[right]);
     const uint32_t across = b - a; /* wraps as the sum does, which is a sum of no negative weights */
     const uint32_t sum = (a << 5) + fu * across + fv * (c - a) + ((fu * fv + 16u) >> 5) * (d - c - across);
     const uint32_t c565 = ((sum + (sum >> 5 & 0xF81Fu) + (sum >> 6 & UINT32_C(0x03E00000))) >> 5) & SPREAD;
@@ -106,10 +109,15 @@ EW_ALWAYS_INLINE uint16_t ordered(uint32_t p, uint32_t turn)
     return (uint16_t)turned;
 }
 
-/* 12 bits times light: floor(floor(c L / 256) / 2^(12 - bits)); c L < 2^20. */
-EW_ALWAYS_INLINE uint32_t lit(uint32_t r, uint32_t g, uint32_t b, const uint32_t light[3])
+/* To 12 bits, and times light: floor(floor(c L / 256) / 2^(12 - bits)); c L < 2^20. */
+EW_ALWAYS_INLINE void decode(uint32_t channel[3], uint32_t p)
 {
-    return r * (light[0] >> 16) >> 15 << 11 | g * (light[1] >> 16) >> 14 << 5 | b * (light[2] >> 16) >> 15;
+    channel[0] = (p >> 11) * 132u, channel[1] = (p >> 5 & 63u) * 65u, channel[2] = (p & 31u) * 132u;
+}
+EW_ALWAYS_INLINE uint32_t lit(const uint32_t channel[3], const uint32_t light[3])
+{
+    return channel[0] * (light[0] >> 16) >> 15 << 11 | channel[1] * (light[1] >> 16) >> 14 << 5 |
+           channel[2] * (light[2] >> 16) >> 15;
 }
 
 /* RGB565 as 12 bits of grey: 1057 c / 8 is 132 c + c / 8. */
@@ -167,14 +175,18 @@ EW_ALWAYS_INLINE int fill(ew_raster *raster, int32_t n, const int has)
         light[0] = ew_light_at(t, run, 0), dlight[0] = ew_light_step(run, 0);
         light[1] = ew_light_at(t, run, 1), dlight[1] = ew_light_step(run, 1);
         light[2] = ew_light_at(t, run, 2), dlight[2] = ew_light_step(run, 2);
-        if (!light_stays(light[0], dlight[0], n) || !light_stays(light[1], dlight[1], n) || !light_stays(light[2], dlight[2], n)) return 0;
+        if (!light_stays(light[0], dlight[0], n) || !light_stays(light[1], dlight[1], n) ||
+            !light_stays(light[2], dlight[2], n)) {
+            return 0;
+        }
     }
-    uint32_t x = at->x, w = at->w, colour = raster->material.colour, r = 0, g = 0, b = 0, du = 0, dv = 0;
+    uint32_t x = at->x, w = at->w, colour = raster->material.colour, channel[3] = { 0, 0, 0 }, du = 0, dv = 0;
     const uint32_t dw = at->dw, key = k->key, turn = k->turn;
     uint8_t *const bytes = k->colour;
     const uint8_t *const thresholds = k->thresholds;
     const int of_dither = k->of_dither;
-    uint16_t *z = has & HAS_DEPTH ? k->depth + x : NULL, *c = has & HAS_GREY4 ? NULL : (uint16_t *)k->colour + x;
+    uint16_t *z = has & HAS_DEPTH ? k->depth + x : NULL;
+    uint16_t *c = has & HAS_GREY4 ? NULL : (uint16_t *)k->colour + x;
     uint16_t *const end = (has & HAS_DEPTH ? z : c) + n;
     place p = { NULL, 0, 0, 0, 0, 0 };
     if (has & HAS_TEXTURE) {
@@ -182,7 +194,7 @@ EW_ALWAYS_INLINE int fill(ew_raster *raster, int32_t n, const int has)
         p.u = (run->u << k->up) + k->u_origin, du = run->du << k->up;
         p.v = (run->v << k->up) + k->v_origin, dv = run->dv << k->up;
     } else if (has & HAS_LIGHT) {
-        r = (colour >> 11) * 132u, g = (colour >> 5 & 63u) * 65u, b = (colour & 31u) * 132u;
+        decode(channel, colour);
     } else {
         colour = ordered(twice(colour), turn);
     }
@@ -194,13 +206,14 @@ EW_ALWAYS_INLINE int fill(ew_raster *raster, int32_t n, const int has)
             if (has & HAS_TEXTURE) colour = has & HAS_SMOOTH ? bilinear(&p) : nearest(&p);
             if (!(has & HAS_KEY) || colour != key) {
                 if (has & HAS_DEPTH) *z = (uint16_t)d;
-                if ((has & HAS_TEXTURE) && (has & HAS_LIGHT)) r = (colour >> 11) * 132u, g = (colour >> 5 & 63u) * 65u, b = (colour & 31u) * 132u;
-                if (has & HAS_LIGHT) colour = lit(r, g, b, light);
+                if ((has & HAS_TEXTURE) && (has & HAS_LIGHT)) decode(channel, colour);
+                if (has & HAS_LIGHT) colour = lit(channel, light);
                 if (has & HAS_GREY4) {
                     const uint32_t grey = grey_of_565(colour);
                     ew_packed_set(bytes, x, 2, (grey - (grey >> of_dither) + thresholds[x & 7u] * 4u) >> 8);
                 } else {
-                    *c = has & HAS_SMOOTH ? ordered(colour, turn) : has & (HAS_TEXTURE | HAS_LIGHT) ? ordered(twice(colour), turn) : (uint16_t)colour;
+                    *c = !(has & (HAS_TEXTURE | HAS_LIGHT)) ? (uint16_t)colour : /* it is in order */
+                             ordered(has & HAS_SMOOTH ? colour : twice(colour), turn);
                 }
             }
         }

@@ -2,8 +2,8 @@
  *
  * A span is drawn in runs: pieces over which attributes are linear. The affine rung makes one
  * run of it, the bound (docs/error-bound.md) as few as the tolerance allows, the table and
- * exact rungs one for each pixel. A run is filled by one of two loops: `fill_textured` for
- * the common case, ew_fill_any for every other combination of material and target.
+ * exact rungs one for each pixel. A run is filled by `fill_textured` in the common case, by
+ * ew_loop_fill in some others, by ew_fill_any with every combination of material and target.
  *
  * Spans step in 32 bits. Those of narrow triangles may, whatever they do; those of wide ones
  * are cut where steps would lose too much, and each piece is aligned anew from 64 bits.
@@ -393,8 +393,10 @@ EW_NOINLINE int start_piece(ew_raster *raster, int32_t x, int32_t y, int32_t n)
     ew_position *at = &raster->work.now.span.fill.any.position;
     at->x = (uint16_t)x, at->y = (uint16_t)y;
     at->w = w, at->dw = dw;
-    at->loop = plain ? raster->loop : LOOP_NONE;
-    if (plain) ew_loop_start(raster, (uint32_t)y);
+    if (EW_HAS_LOOPS) {
+        at->loop = plain ? raster->loop : LOOP_NONE;
+        if (plain) ew_loop_start(raster, (uint32_t)y);
+    }
     return 0;
 }
 
