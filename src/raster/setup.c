@@ -12,10 +12,10 @@
  * Source: K.-L. Low, "Perspective-Correct Interpolation", 2002, equations 12 and 16:
  * 1/z and (attribute)/z are linear on the screen. Plane coefficients: docs/conventions.md.
  */
-#include "loops.h"
 #include "triangle.h"
 
 #include "arch.h"
+#include "loops.h"
 
 static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
 static uint32_t smaller(uint32_t a, uint32_t b) { return a < b ? a : b; }
@@ -269,7 +269,7 @@ static int32_t attribute(int32_t d, uint32_t w, int bits, int affine)
 
 static uint8_t plainness(const ew_raster *raster, uint32_t w_min, uint32_t w_max)
 {
-    if (!raster->loop) return PLAIN_NEVER;
+    if (raster->loop != LOOP_TEXTURED) return PLAIN_NEVER;
     /* what lies outside of the corners (stays_near), and steps' rounding */
     return w_min >= 65536u && w_max <= 0x50000000u ? PLAIN_ALWAYS : PLAIN_SOMETIMES;
 }
@@ -360,7 +360,7 @@ int ew_setup(ew_raster *raster)
         }
     }
     runs_init(t, raster);
-    t->is_quick = t->plain == PLAIN_ALWAYS && raster->loop == LOOP_TEXTURED && t->attributes == 2 &&
+    t->is_quick = t->plain == PLAIN_ALWAYS && t->attributes == 2 &&
                   (t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_RUNS);
     return EW_OK;
 }

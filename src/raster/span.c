@@ -362,11 +362,15 @@ static void piece_of_any(ew_raster *raster, int32_t n)
 
 /* 1/z is linear: the first pixel's and the last's say whether any in between leaves depth's
  * range. */
-EW_ALWAYS_INLINE int is_plain(const ew_triangle *t, uint32_t w, uint32_t dw, int32_t n)
+EW_ALWAYS_INLINE int stays_in_range(uint32_t w, uint32_t dw, int32_t n)
 {
-    if (t->plain != PLAIN_SOMETIMES) return t->plain;
     uint32_t last = w + dw * (uint32_t)(n - 1);
     return w >= 32768u && w <= INT32_MAX && last >= 32768u && last <= INT32_MAX;
+}
+
+EW_ALWAYS_INLINE int is_plain(const ew_triangle *t, uint32_t w, uint32_t dw, int32_t n)
+{
+    return t->plain != PLAIN_SOMETIMES ? t->plain : stays_in_range(w, dw, n);
 }
 
 /* Makes ready for a piece of a span, of n <= EW_LONGEST_RUN pixels from (x, y) on, that
@@ -378,8 +382,7 @@ EW_NOINLINE int start_piece(ew_raster *raster, int32_t x, int32_t y, int32_t n)
     EW_KEEP_ORDER(t);
     const int down = (int)smaller(t->w_lead + l->align, 31);
     const uint32_t w = depth_of(l->w, down), dw = depth_step(l->dw, down);
-    const int plain = is_plain(t, w, dw, n);
-    if (plain && raster->loop == LOOP_TEXTURED) {
+    if (is_plain(t, w, dw, n)) {
         const size_t offset = (size_t)(y - raster->target.first_row) * raster->target.stride + (size_t)x;
         ew_packing *k = &raster->work.now.span.fill.packing;
         EW_KEEP_ORDER(k);
@@ -394,8 +397,8 @@ EW_NOINLINE int start_piece(ew_raster *raster, int32_t x, int32_t y, int32_t n)
     at->x = (uint16_t)x, at->y = (uint16_t)y;
     at->w = w, at->dw = dw;
     if (EW_HAS_LOOPS) {
-        at->loop = plain ? raster->loop : LOOP_NONE;
-        if (plain) ew_loop_start(raster, (uint32_t)y);
+        at->loop = raster->loop > LOOP_TEXTURED && stays_in_range(w, dw, n) ? raster->loop : LOOP_NONE;
+        if (at->loop) ew_loop_start(raster, (uint32_t)y);
     }
     return 0;
 }

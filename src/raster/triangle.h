@@ -19,7 +19,7 @@ enum {
 };
 #define EW_FRACTION(bits) (39 - (bits))
 
-/* Whether ew_raster.loop may draw a triangle's spans: never, for its material or
+/* Whether fill_textured (span.c) may draw a triangle's spans: never, for its material or
  * target; where 1/z at the span's ends stays inside depth's range; or everywhere. */
 enum { PLAIN_NEVER, PLAIN_SOMETIMES, PLAIN_ALWAYS };
 
