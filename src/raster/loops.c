@@ -185,9 +185,8 @@ EW_ALWAYS_INLINE int fill(ew_raster *raster, int32_t n, const int has)
     uint8_t *const bytes = k->colour;
     const uint8_t *const thresholds = k->thresholds;
     const int of_dither = k->of_dither;
-    uint16_t *z = has & HAS_DEPTH ? k->depth + x : NULL;
     uint16_t *c = has & HAS_GREY4 ? NULL : (uint16_t *)k->colour + x;
-    uint16_t *const end = (has & HAS_DEPTH ? z : c) + n;
+    uint16_t *z = has & HAS_DEPTH ? k->depth + x : c, *const end = z + n;
     place p = { NULL, 0, 0, 0, 0, 0 };
     if (has & HAS_TEXTURE) {
         p.texels = k->texels, p.columns = k->columns, p.rows = k->rows, p.down = k->down;
