@@ -46,10 +46,13 @@ $(T)/test_readme: $(UNIT)/test_readme.o $(T)/readme_example.o $(UNIT)/unit.o $(B
 # ---- configurations: each needs a core of its own ----
 # recip-N: the reciprocals with a table of 2^N entries; raster-N: coverage at N subpixel bits;
 # geometry-pieces: products as on a core without a long multiply; fill-without-X: the fills
-# with EW_WITH_X = 0, under UBSan; EVERYTHING is all of them.
+# with EW_WITH_X = 0, under UBSan; SOME_LOOPS and OTHER_LOOPS share the loops, EVERYTHING is all of it.
 FILL_PARTS := SHADING FOG BLENDS CUTOUTS BILINEAR MIPS WRAPS TEXTURE_FORMATS TARGET_FORMATS DITHER
+SOME_LOOPS := LOOP_FLAT LOOP_NO_DEPTH LOOP_LIT LOOP_GREY4
+OTHER_LOOPS := LOOP_GOURAUD LOOP_KEYED LOOP_BILINEAR
+EVERYTHING := $(FILL_PARTS) $(SOME_LOOPS) $(OTHER_LOOPS)
 CONFIG_TESTS := $(foreach n,4 5 6 7 9,$(T)/test_recip-$(n)) $(foreach n,4 6,$(T)/test_raster-$(n)) $(T)/test_geometry-pieces \
-  $(foreach part,$(FILL_PARTS) EVERYTHING,$(T)/test_fill-without-$(part))
+  $(foreach part,$(FILL_PARTS) SOME_LOOPS OTHER_LOOPS EVERYTHING,$(T)/test_fill-without-$(part))
 $(CONFIG_TESTS): $(wildcard include/edgewalk/*.h fixed/*.inc src/*/*.h $(addprefix host_tests/,unit/unit.h reference/*.h accuracy/*.h))
 $(T)/test_recip-%: host_tests/unit/test_recip.c host_tests/unit/unit.c fixed/recip.c
 	@mkdir -p $(@D); echo "CC $@"
@@ -66,7 +69,7 @@ $(T)/test_fill-without-%: host_tests/unit/test_fill.c host_tests/unit/unit.c hos
   $(filter fixed/% src/raster/%,$(CORE_SRCS))
 	@mkdir -p $(@D); echo "CC $@"
 	@$(CC) $(HOST_CFLAGS) -Werror -DSHARE=8 -fsanitize=undefined -fno-sanitize-recover=all -o $@ $(filter %.c,$^) -lcmocka -lm \
-	  $(patsubst %,-DEW_WITH_%=0,$(if $(filter EVERYTHING,$*),$(FILL_PARTS),$*))
+	  $(patsubst %,-DEW_WITH_%=0,$(if $(filter SOME_LOOPS OTHER_LOOPS EVERYTHING,$*),$($*),$*))
 
 include host_tests/property/dir.mk
 include host_tests/mesa/dir.mk

@@ -1,7 +1,7 @@
 /* edgewalk/raster_work.h - the raster layer's own; nothing for users.
  *
  * What the layer works with while it draws a triangle. It lies in the caller's context and
- * not on the stack, which stays below 512 bytes; nothing in it outlives a call, but for `loop`.
+ * not on the stack, which stays below 512 bytes; nothing in it outlives a call, but for `packing`.
  */
 #ifndef EW_RASTER_WORK_H
 #define EW_RASTER_WORK_H
@@ -147,15 +147,16 @@ typedef struct ew_attribute_run {
     uint32_t shade[3], dshade[3];
 } ew_attribute_run;
 
-/* Where ew_fill_any goes on, and 1/z there. */
+/* Where ew_loop_fill or ew_fill_any goes on, and 1/z there. */
 typedef struct ew_position {
     uint16_t x, y;
     uint32_t w, dw;
+    uint8_t loop; /* ew_raster.loop where the piece lets it, else 0                        */
 } ew_position;
 
 /* How a run's u and v become one texel number (span.c): what depends on the texture alone, and
  * what the pixel loop of arch.h reads; its machine code knows the order. */
-typedef struct ew_pixel_loop {
+typedef struct ew_packing {
     const uint16_t *texels;
     uint32_t turn, mask;   /* texel numbers are shifted by EW_INDEX_SHIFT (arch.h)         */
     uint32_t dhigh, dlow;
@@ -163,7 +164,7 @@ typedef struct ew_pixel_loop {
     uint32_t low;          /* bits of v's texel                                            */
     uint8_t log2_width, log2_height;
     uint8_t is_256;        /* the texture is 256 x 256                                     */
-} ew_pixel_loop;
+} ew_packing;
 
 /* Where the next pixel goes, and 1/z there, uq1.31. */
 typedef struct ew_pen {
@@ -172,7 +173,20 @@ typedef struct ew_pen {
     uint16_t x, y; /* for tests                                                            */
 } ew_pen;
 
-/* ---- fills (fill.c, texture.c) ---- */
+/* ---- fills (loops.c, fill.c, texture.c) ---- */
+
+/* What the loops of loops.c need of a row, the texture and the triangle. */
+typedef struct ew_loop_work {
+    void *colour;              /* the row's first pixels                                   */
+    uint16_t *depth;           /* the same, or NULL                                        */
+    const uint8_t *thresholds; /* of the row's dither                                      */
+    const uint16_t *texels;
+    uint32_t columns, rows;    /* masks: of a column, of a row times the width             */
+    uint32_t u_origin, v_origin; /* added to u and v, texels with 20 bits of fraction      */
+    uint32_t key, turn;        /* 65,536: none; how far pixels are rotated                 */
+    uint8_t down, up;          /* shifts: of v to a row times the width, of u and v        */
+    uint8_t of_dither;         /* a shift that takes off what dither adds, or all          */
+} ew_loop_work;
 
 /* A run: a piece of a span over which everything is linear. Values belong to its first
  * pixel, steps lead to the next; sums wrap and are only meaningful inside the run. */
@@ -211,9 +225,9 @@ typedef struct ew_sampler {
     const uint8_t *texels;
     const uint8_t *mask; /* NULL: none                                                     */
     ew_axis u, v;
-    uint32_t sum[3];   /* of a pixel's texels, by their weights                             */
-    uint8_t weight[4];
-    uint16_t texel[3]; /* the colour of a texel, then of the pixel                          */
+    uint8_t weight[4]; /* of four texels                                                   */
+    uint16_t texel[3]; /* the colour of one of them                                        */
+    uint16_t level_colour[3]; /* of a pixel, on the second of two levels                   */
     uint16_t level, next_share; /* the level, and the share of the one behind it            */
     uint16_t row_bytes, mask_row_bytes; /* 4096 at most                                     */
     uint16_t share;    /* of 256: how far they take the place of what the piece has        */
@@ -236,6 +250,7 @@ typedef struct ew_span_work {
         struct {
             ew_attribute_run attributes;
             ew_position position;
+            ew_loop_work loop;
             ew_run run;
             ew_piece piece;
             ew_sampler sampler;
@@ -244,7 +259,7 @@ typedef struct ew_span_work {
 } ew_span_work;
 
 typedef struct ew_raster_work {
-    ew_pixel_loop loop; /* set with the material                                           */
+    ew_packing packing; /* set with the material                                       */
     ew_triangle triangle;
     ew_corners corners;
     ew_edge edge[2]; /* left, right                                                       */

@@ -68,7 +68,7 @@
     "beq 4f\n\t" \
     EW_PIXEL(index) \
     "4:"
-EW_ALWAYS_INLINE uint32_t ew_fill_pixels(ew_pixel_loop *k, uint16_t *c, uint16_t *z, int32_t n, uint32_t w, uint32_t dw,
+EW_ALWAYS_INLINE uint32_t ew_fill_pixels(ew_packing *k, uint16_t *c, uint16_t *z, int32_t n, uint32_t w, uint32_t dw,
                                          uint32_t high, uint32_t low, uint32_t dhigh, uint32_t dlow)
 {
     uint32_t t;
@@ -111,7 +111,7 @@ EW_ALWAYS_INLINE uint32_t ew_fill_pixels(ew_pixel_loop *k, uint16_t *c, uint16_t
     "adds %[low], %[low], %[t]\n\t" \
     "adcs %[high], %[d]\n\t" \
     "add %[w], %[dw]\n\t"
-EW_ALWAYS_INLINE uint32_t ew_fill_pixels(ew_pixel_loop *k, uint16_t *c, uint16_t *z, int32_t n, uint32_t w, uint32_t dw,
+EW_ALWAYS_INLINE uint32_t ew_fill_pixels(ew_packing *k, uint16_t *c, uint16_t *z, int32_t n, uint32_t w, uint32_t dw,
                                          uint32_t high, uint32_t low, uint32_t dhigh, uint32_t dlow)
 {
     uint32_t t, d;

@@ -1,6 +1,7 @@
 /* The raster context: target, scissor, material, fog, clearing. */
 #include "edgewalk/raster.h"
 
+#include "loops.h"
 #include "pixel.h"
 #include "target.h"
 #include "texture.h"
@@ -75,20 +76,6 @@ static int check_material(const ew_material *m)
     return EW_OK;
 }
 
-/* What span.c's loop for textures knows: RGB565 as it is stored, from one power of two by
- * another, at most 2^16 texels, to a target with depth. Dither changes nothing that comes
- * from as many bits. */
-static int is_plain(const ew_raster *raster)
-{
-    const ew_target *target = &raster->target;
-    const ew_texture *t = &raster->texture;
-    return t->texels && t->format == EW_TEXTURE_RGB565 && !t->wrap_u && !t->wrap_v && t->levels <= 1 &&
-           !(t->width & (t->width - 1u)) && !(t->height & (t->height - 1u)) && raster->log2_width >= 1 &&
-           raster->log2_height >= 1 && raster->log2_width + raster->log2_height <= 16 &&
-           raster->material.filter == EW_FILTER_NEAREST && !raster->material.blend &&
-           !(raster->material.flags & ~EW_DOUBLE_SIDED) && target->depth && target->format == EW_TARGET_RGB565;
-}
-
 /* Rounded up. */
 static uint8_t log2_of(uint32_t size) { return (uint8_t)(32 - ew_clz32(size - 1u)); }
 
@@ -105,8 +92,8 @@ int ew_raster_set_material(ew_raster *raster, const ew_material *material)
     raster->inverse_height = ew_texture_inverse(raster->texture.height);
     raster->log2_width = log2_of(raster->texture.width);
     raster->log2_height = log2_of(raster->texture.height);
-    raster->plain = (uint8_t)is_plain(raster);
-    if (raster->plain) ew_pixel_loop_init(&raster->work.loop, raster);
+    raster->loop = ew_loop_of(raster);
+    if (raster->loop == LOOP_TEXTURED) ew_packing_init(&raster->work.packing, raster);
     return EW_OK;
 }
 
@@ -139,7 +126,7 @@ void ew_raster_clear(ew_raster *raster, uint16_t rgb565)
     piece->live = 0xFF;
     for (int i = 0; i < EW_PIECE; i++) ew_decode_565(piece->colour[i], rgb565, ew_wide(target));
     for (uint16_t y = r->y0; y < r->y1; y++) {
-        const size_t row = (size_t)(y - target->first_row) * target->stride;
+        const size_t row = ew_row_start(target, y);
         if (!as_it_is) {
             piece->x = r->x0;
             piece->y = y;

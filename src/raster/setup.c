@@ -12,6 +12,7 @@
  * Source: K.-L. Low, "Perspective-Correct Interpolation", 2002, equations 12 and 16:
  * 1/z and (attribute)/z are linear on the screen. Plane coefficients: docs/conventions.md.
  */
+#include "loops.h"
 #include "run.h"
 
 static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
@@ -313,7 +314,7 @@ static int32_t attribute(int32_t d, uint32_t w, int bits, int affine)
 
 static uint8_t plainness(const ew_raster *raster, uint32_t w_min, uint32_t w_max)
 {
-    if (!raster->plain) return PLAIN_NEVER;
+    if (raster->loop != LOOP_TEXTURED) return PLAIN_NEVER;
     /* what lies outside of the corners (stays_near), and steps' rounding */
     return w_min >= 65536u && w_max <= 0x50000000u ? PLAIN_ALWAYS : PLAIN_SOMETIMES;
 }

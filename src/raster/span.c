@@ -2,14 +2,15 @@
  *
  * A span is drawn in runs: pieces over which attributes are linear. The affine rung makes one
  * run of it, the bound (docs/error-bound.md) as few as the tolerance allows, the table and
- * exact rungs one for each pixel. A run is filled by one of two loops: `fill_run` for
- * the common case, ew_fill_any for every other combination of material and target.
+ * exact rungs one for each pixel. A run is filled by `fill_pixels` in the common case, by
+ * ew_loop_fill in some others, by ew_fill_any with every combination of material and target.
  *
  * Spans step in 32 bits. Those of narrow triangles may, whatever they do; those of wide ones
  * are cut where steps would lose too much, and each piece is aligned anew from 64 bits.
  */
 #include "arch.h"
 #include "fill.h"
+#include "loops.h"
 #include "run.h"
 
 static int32_t larger(int32_t a, int32_t b) { return a > b ? a : b; }
@@ -54,7 +55,7 @@ EW_ALWAYS_INLINE uint32_t slope(uint32_t a, uint32_t da, uint32_t dw, divisor d)
  * the texel number together; what v's texel carries goes into u's fraction, 256 times 2^-16
  * texel at most. */
 
-void ew_pixel_loop_init(ew_pixel_loop *k, const ew_raster *raster)
+void ew_packing_init(ew_packing *k, const ew_raster *raster)
 {
     const uint32_t texels = UINT32_C(1) << (raster->log2_width + raster->log2_height); /* 2^16 at most */
     k->texels = raster->texture.texels;
@@ -80,7 +81,7 @@ EW_ALWAYS_INLINE void pen_at(ew_pen *pen, const ew_raster *raster, int32_t x, in
 
 /* n > 0 pixels, n at most EW_LONGEST_RUN, of a run with u and v at its first. The pen moves
  * behind the last. */
-EW_ALWAYS_INLINE void fill_pixels(ew_pixel_loop *k, const ew_triangle *t, ew_pen *pen, uint32_t u, uint32_t du,
+EW_ALWAYS_INLINE void fill_pixels(ew_packing *k, const ew_triangle *t, ew_pen *pen, uint32_t u, uint32_t du,
                                   uint32_t v, uint32_t dv, int32_t n)
 {
     const int log2_height = k->log2_height;
@@ -194,7 +195,7 @@ static int is_short(const ew_triangle *t, const ew_span_work *span, int32_t m)
 
 /* A run of m pixels, then more as long as they pay. Returns the length of the run that would
  * come next. */
-EW_NOINLINE int32_t runs_of_texture(ew_pixel_loop *k, const ew_triangle *t, ew_span_work *span, int32_t m)
+EW_NOINLINE int32_t runs_of_texture(ew_packing *k, const ew_triangle *t, ew_span_work *span, int32_t m)
 {
     ew_linear *l = &span->linear;
     for (;;) {
@@ -212,7 +213,7 @@ EW_NOINLINE int32_t runs_of_texture(ew_pixel_loop *k, const ew_triangle *t, ew_s
 
 /* Each pixel with a reciprocal of its own: all that are left of the piece, or as many as there may
  * be before the next look whether a run pays. Returns as runs_of_texture. */
-EW_NOINLINE int32_t pixels_of_texture(ew_pixel_loop *k, const ew_triangle *t, ew_span_work *span)
+EW_NOINLINE int32_t pixels_of_texture(ew_packing *k, const ew_triangle *t, ew_span_work *span)
 {
     enum { AT_ONCE = 16 };
     ew_linear *l = &span->linear;
@@ -249,7 +250,7 @@ EW_NOINLINE int32_t pixels_of_texture(ew_pixel_loop *k, const ew_triangle *t, ew
 /* A piece of a span, of at most EW_LONGEST_RUN pixels. */
 EW_NOINLINE void piece_of_texture(ew_raster *raster, const ew_triangle *t, int32_t n)
 {
-    ew_pixel_loop *k = &raster->work.loop;
+    ew_packing *k = &raster->work.packing;
     ew_span_work *span = &raster->work.now.span;
     int32_t m = first_run(span, t, n);
     do {
@@ -262,11 +263,9 @@ EW_NOINLINE void piece_of_texture(ew_raster *raster, const ew_triangle *t, int32
 /* A tangent may leave a shade's range: ew_fill_any clamps. */
 static void shade_run(ew_run *run, const ew_triangle *t, const ew_attribute_run *from)
 {
-    enum { DOWN = EW_FRACTION(EW_SHADE_BITS) - 16 };
     for (int i = 0; i < 3; i++) {
-        /* rounds to nearest where fill.c drops the fraction */
-        run->shade[i] = t->shade_origin[i] * 16 + 32768 + EW_ASR((int32_t)from->shade[i], DOWN);
-        run->dshade[i] = EW_ASR((int32_t)from->dshade[i], DOWN);
+        run->shade[i] = (int32_t)ew_light_at(t, from, i);
+        run->dshade[i] = (int32_t)ew_light_step(from, i);
     }
 }
 
@@ -373,8 +372,10 @@ static void piece_of_any(ew_raster *raster, int32_t n)
 {
     while (n > 0) {
         const int32_t m = next_of_any(raster, n);
-        make_run(raster, m);
-        ew_fill_any(raster, &raster->work.now.span.fill.any.run, m);
+        if (!ew_loop_fill(raster, m)) {
+            make_run(raster, m);
+            ew_fill_any(raster, &raster->work.now.span.fill.any.run, m);
+        }
         n -= m;
     }
 }
@@ -383,11 +384,15 @@ static void piece_of_any(ew_raster *raster, int32_t n)
 
 /* 1/z is linear: the first pixel's and the last's say whether any in between leaves depth's
  * range. */
-EW_ALWAYS_INLINE int is_plain(const ew_triangle *t, uint32_t w, uint32_t dw, int32_t n)
+EW_ALWAYS_INLINE int stays_in_range(uint32_t w, uint32_t dw, int32_t n)
 {
-    if (t->plain != PLAIN_SOMETIMES) return t->plain;
     uint32_t last = w + dw * (uint32_t)(n - 1);
     return w >= 32768u && w <= INT32_MAX && last >= 32768u && last <= INT32_MAX;
+}
+
+EW_ALWAYS_INLINE int is_plain(const ew_triangle *t, uint32_t w, uint32_t dw, int32_t n)
+{
+    return t->plain != PLAIN_SOMETIMES ? t->plain : stays_in_range(w, dw, n);
 }
 
 /* Makes ready for a piece of a span, of n <= EW_LONGEST_RUN pixels from (x, y) on, that
@@ -408,6 +413,10 @@ EW_NOINLINE int start_piece(ew_raster *raster, int32_t x, int32_t y, int32_t n)
     ew_position *at = &raster->work.now.span.fill.any.position;
     at->x = (uint16_t)x, at->y = (uint16_t)y;
     at->w = w, at->dw = dw;
+    if (EW_HAS_LOOPS) {
+        at->loop = raster->loop > LOOP_TEXTURED && stays_in_range(w, dw, n) ? raster->loop : LOOP_NONE;
+        if (at->loop) ew_loop_start(raster, (uint32_t)y);
+    }
     return 0;
 }
 
@@ -567,7 +576,7 @@ int ew_rows_of_texture(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t
                 pen_at(&pen, raster, x, row);
                 pen.w = depth_of(w, t->w_lead), pen.dw = depth_step(dw, t->w_lead);
                 if (t->rung != EW_RUNG_AFFINE) tangent(t, w, dw, &u, &du, &v, &dv, n);
-                fill_pixels(&raster->work.loop, t, &pen, u, du, v, dv, n);
+                fill_pixels(&raster->work.packing, t, &pen, u, du, v, dv, n);
             } else {
                 l->w = w, l->dw = dw, l->u = u, l->du = du, l->v = v, l->dv = dv;
                 l->align = 0;

@@ -1,6 +1,7 @@
 /* Targets: a colour of three 12-bit channels becomes a pixel. docs/fills.md has the formulas. */
 #include "target.h"
 
+#include "arch.h"
 #include "pixel.h"
 
 /* A pixel is `channels` channels, the first one highest. */
@@ -49,6 +50,16 @@ static const uint8_t bayer[8][8] = {
 };
 #endif
 
+const uint8_t *ew_thresholds(const ew_target *target, uint32_t y)
+{
+    static const uint8_t none[8] = { 0 };
+#if EW_WITH_DITHER
+    if (target->dither) return bayer[y & 7u];
+#endif
+    (void)target, (void)y;
+    return none;
+}
+
 /* 12 bits to `bits`; threshold is 0 to 63, or negative: no dither. */
 static uint32_t reduce(uint32_t c, int bits, int threshold)
 {
@@ -91,21 +102,42 @@ static void write_pixel(const ew_target *target, uint8_t *row, uint32_t x, int l
     }
 }
 
+/* RGB565 without dither and blend. */
+EW_NOINLINE void put_565(const ew_target *target, const ew_piece *piece)
+{
+    uint16_t *to = (uint16_t *)target->colour + ew_row_start(target, piece->y) + piece->x;
+    const uint16_t *c = piece->colour[0];
+    const int swap = EW_WITH_TARGET_FORMATS && target->format == EW_TARGET_RGB565_SWAPPED;
+    for (uint32_t live = piece->live & 0xFFu >> (EW_PIECE - piece->n); live; live >>= 1, to++, c += 3) {
+        const uint32_t p = (uint32_t)(c[0] >> 7) << 11 | (uint32_t)(c[1] >> 6) << 5 | c[2] >> 7;
+        if (live & 1u) *to = (uint16_t)(swap ? swapped(p) : p);
+    }
+}
+
 void ew_target_put(const ew_target *target, const ew_piece *piece, int blend)
 {
+    if ((!EW_WITH_TARGET_FORMATS || target->format <= EW_TARGET_RGB565_SWAPPED) && !(EW_WITH_DITHER && target->dither) &&
+        !(EW_WITH_BLENDS && blend)) {
+        put_565(target, piece);
+        return;
+    }
+
     const layout *form = &layouts[EW_WITH_TARGET_FORMATS ? target->format : 0];
     const int log2_bits = form->log2_bits;
     /* whole bytes: a stride of packed pixels is a multiple of what a byte holds */
-    uint8_t *row = (uint8_t *)target->colour + (((size_t)(piece->y - target->first_row) * target->stride) << log2_bits >> 3);
+    uint8_t *row = (uint8_t *)target->colour + (ew_row_start(target, piece->y) << log2_bits >> 3);
     const int dither = EW_WITH_DITHER && target->dither;
     const uint32_t y = piece->y;
+#if EW_WITH_DITHER
+    const uint8_t *thresholds = ew_thresholds(target, y);
+#endif
     for (int i = 0; i < piece->n; i++) {
         if (!(piece->live >> i & 1)) continue;
         const uint32_t x = (uint32_t)piece->x + (uint32_t)i;
         const uint32_t old = EW_WITH_BLENDS && blend ? read_pixel(target, row, x, log2_bits) : 0;
         int threshold = -1;
 #if EW_WITH_DITHER
-        if (dither) threshold = bayer[y & 7u][x & 7u];
+        if (dither) threshold = thresholds[x & 7u];
 #endif
         uint32_t pixel = 0;
         int below = 1 << log2_bits; /* bits of the channels still to come */
@@ -132,7 +164,7 @@ void ew_target_fill(const ew_target *target, ew_piece *piece, uint16_t x1)
     const uint8_t *pattern = NULL;
     for (uint32_t x = piece->x; x < x1; x += (uint32_t)piece->n) {
         const uint32_t room = 8u - (x & 7u), left = x1 - x;
-        uint8_t *to = (uint8_t *)target->colour + (((size_t)(piece->y - target->first_row) * target->stride + x) * bytes >> 3);
+        uint8_t *to = (uint8_t *)target->colour + ((ew_row_start(target, piece->y) + x) * bytes >> 3);
         piece->n = (int)(room < left ? room : left);
         if (piece->n < 8 || !pattern) {
             piece->x = (uint16_t)x;

@@ -7,6 +7,10 @@
 /* Whether the core can draw into it: EW_OK, EW_ERR_ARGUMENT or EW_ERR_UNSUPPORTED. */
 int ew_target_check(const ew_target *target);
 
+/* Thresholds of a row of the target, from column 0 on, repeated every 8 pixels; none without
+ * dither: zeros. */
+const uint8_t *ew_thresholds(const ew_target *target, uint32_t y);
+
 /* Converts, dithers, blends and stores the live pixels of a piece. */
 void ew_target_put(const ew_target *target, const ew_piece *piece, int blend);
 

@@ -121,7 +121,7 @@ static uint32_t clamp(uint32_t i, uint32_t size)
 }
 
 /* The texel of the position, or the one `next` behind it, 0 or 1. */
-static uint32_t texel_index(const ew_axis *a, uint32_t next)
+EW_NOINLINE uint32_t texel_index(const ew_axis *a, uint32_t next)
 {
     uint32_t i = (uint32_t)(a->at >> 32) + next;
     if (EW_WITH_WRAPS && !a->period) return clamp(i, a->size);
@@ -195,17 +195,17 @@ static uint32_t stored(const ew_sampler *s, uint32_t column, uint32_t row)
     return ew_packed_get(line, column, s->log2_bits);
 }
 
-EW_NOINLINE void fetch(ew_sampler *s, uint32_t column, uint32_t row)
+EW_NOINLINE void fetch(const ew_sampler *s, uint32_t column, uint32_t row, uint16_t colour[3])
 {
     const ew_texture *t = s->texture;
     uint32_t value = stored(s, column, row);
     switch (EW_WITH_TEXTURE_FORMATS ? t->format : EW_TEXTURE_RGB565) {
     case EW_TEXTURE_RGB565: break;
-    case EW_TEXTURE_RGB332: ew_decode_332(s->texel, value); return;
-    case EW_TEXTURE_GREY8: ew_decode_grey(s->texel, value); return;
+    case EW_TEXTURE_RGB332: ew_decode_332(colour, value); return;
+    case EW_TEXTURE_GREY8: ew_decode_grey(colour, value); return;
     default: value = t->palette[value]; break;
     }
-    ew_decode_565(s->texel, value, s->wide);
+    ew_decode_565(colour, value, s->wide);
 }
 
 /* Whether a texel is left out. */
@@ -225,14 +225,20 @@ EW_NOINLINE void weigh(ew_sampler *s, uint32_t fu, uint32_t fv)
     s->weight[1] = (uint8_t)(fu - both);
     s->weight[2] = (uint8_t)(fv - both);
     s->weight[3] = (uint8_t)both;
-    s->sum[0] = s->sum[1] = s->sum[2] = 0;
 }
 
-/* Adds one of the four. */
-EW_NOINLINE void add_texel(ew_sampler *s, uint32_t k)
+/* Their sum, at most 32 * 4095, and from it the pixel's colour. */
+EW_NOINLINE void add_texels(ew_sampler *s, uint16_t colour[3])
 {
-    fetch(s, texel_index(&s->u, k & 1u), texel_index(&s->v, k >> 1));
-    for (int j = 0; j < 3; j++) s->sum[j] += (uint32_t)s->weight[k] * s->texel[j]; /* <= 32 * 4095 */
+    const uint32_t column[2] = { texel_index(&s->u, 0), texel_index(&s->u, 1) };
+    uint32_t row = texel_index(&s->v, 0), r = 0, g = 0, b = 0;
+    for (int k = 0; k < 4; k++) {
+        const uint32_t weight = s->weight[k];
+        if (k == 2) row = texel_index(&s->v, 1);
+        fetch(s, column[k & 1], row, s->texel);
+        r += weight * s->texel[0], g += weight * s->texel[1], b += weight * s->texel[2];
+    }
+    colour[0] = (uint16_t)(r >> 5), colour[1] = (uint16_t)(g >> 5), colour[2] = (uint16_t)(b >> 5);
 }
 #endif
 
@@ -253,31 +259,23 @@ EW_NOINLINE void start_level(ew_sampler *s, const ew_raster *raster, const ew_ru
     axis_start(&s->v, s->level, t->wrap_v, raster->inverse_height, back);
 }
 
-/* The pixel's colour into s->texel. */
-static void sample_pixel(ew_sampler *s, uint32_t fu, uint32_t fv, uint32_t column, uint32_t row)
+static void sample_pixel(ew_sampler *s, uint32_t fu, uint32_t fv, uint32_t column, uint32_t row, uint16_t colour[3])
 {
 #if EW_WITH_BILINEAR
     if (fu | fv) {
         weigh(s, fu, fv);
-        for (uint32_t k = 0; k < 4; k++) add_texel(s, k);
-        for (int j = 0; j < 3; j++) s->texel[j] = (uint16_t)(s->sum[j] >> 5);
+        add_texels(s, colour);
         return;
     }
 #else
     (void)fu, (void)fv;
 #endif
-    fetch(s, column, row);
-}
-
-EW_NOINLINE void store(const ew_sampler *s, uint16_t colour[3])
-{
-    for (int k = 0; k < 3; k++) {
-        colour[k] = EW_WITH_MIPS && s->share < 256 ? ew_mix256(colour[k], s->texel[k], s->share) : s->texel[k];
-    }
+    fetch(s, column, row, colour);
 }
 
 void ew_texture_sample(ew_sampler *s, ew_piece *piece)
 {
+    const int second = EW_WITH_MIPS && s->share < 256;
     for (int i = 0; i < piece->n; i++) {
         if (piece->live >> i & 1) {
             const uint32_t fu = s->smooth ? (uint32_t)(s->u.at >> 27 & 31u) : 0, fv = s->smooth ? (uint32_t)(s->v.at >> 27 & 31u) : 0;
@@ -286,8 +284,9 @@ void ew_texture_sample(ew_sampler *s, ew_piece *piece)
             if (EW_WITH_CUTOUTS && s->cuts && is_cut(s, column, row)) {
                 piece->live = (uint8_t)(piece->live & ~(1u << i));
             } else {
-                sample_pixel(s, fu, fv, column, row);
-                store(s, piece->colour[i]);
+                uint16_t *colour = piece->colour[i];
+                sample_pixel(s, fu, fv, column, row, second ? s->level_colour : colour);
+                for (int k = 0; second && k < 3; k++) colour[k] = ew_mix256(colour[k], s->level_colour[k], s->share);
             }
         }
         axis_step(&s->u);

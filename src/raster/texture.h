@@ -11,7 +11,8 @@ int ew_texture_check(const ew_texture *texture, int filter, int flags);
 /* floor(2^32 / size); 0 for a size of 1. */
 uint32_t ew_texture_inverse(uint32_t size);
 
-/* Makes ready for a piece's first level; it begins at the run's first pixel. */
+/* Makes ready for a piece's first level; it begins at the run's first pixel. Without mip levels
+ * the next piece goes on where ew_texture_sample has come to. */
 void ew_texture_start(ew_sampler *s, const ew_raster *raster, const ew_run *run);
 
 /* The colours of the piece. Pixels whose texel is left out are no longer live. */

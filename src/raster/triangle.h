@@ -24,7 +24,7 @@ enum {
 enum { PLAIN_NEVER, PLAIN_SOMETIMES, PLAIN_ALWAYS };
 
 /* What the loop of span.c needs to know of raster->texture. */
-void ew_pixel_loop_init(ew_pixel_loop *loop, const ew_raster *raster);
+void ew_packing_init(ew_packing *packing, const ew_raster *raster);
 
 /* Rungs, planes and shifts of work.triangle; planes stand on work.corners.first. Returns EW_OK
  * or EW_ERR_RANGE. */
