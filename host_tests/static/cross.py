@@ -26,7 +26,7 @@ CONFIGURATIONS = {
     "the same with transform": (("raster", "geometry"), GEOMETRY, NO_FILLS),
     "raster, all fills": (("raster",), RASTER, []),
     "the same with transform and light": (("raster", "geometry", "light"), GEOMETRY, []),
-    "everything, with scenes": (("fixed", "raster", "geometry", "light", "scene", "error"), GEOMETRY + ("src/scene",), []),
+    "everything, with scenes": (("fixed", "raster", "draw2d", "geometry", "light", "scene", "error"), GEOMETRY + ("src/scene",), []),
     "display, device side": (("display",), ("fixed", "src/display"), []),
 }
 

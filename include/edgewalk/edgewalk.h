@@ -4,6 +4,7 @@
 
 #include "config.h"
 #include "display.h"
+#include "draw2d.h"
 #include "error.h"
 #include "fixed.h"
 #include "geometry.h"

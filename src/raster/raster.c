@@ -1,6 +1,7 @@
 /* The raster context: target, scissor, material, fog, clearing. */
 #include "edgewalk/raster.h"
 
+#include "fill.h"
 #include "pixel.h"
 #include "target.h"
 #include "texture.h"
@@ -127,15 +128,15 @@ int ew_raster_set_fog(ew_raster *raster, uint16_t rgb565, ew_uq1_31 w_near, ew_u
 
 /* ---- clear ---- */
 
-void ew_raster_clear(ew_raster *raster, uint16_t rgb565)
+void ew_raster_fill(ew_raster *raster, const ew_rect *r, uint16_t rgb565, uint16_t *depth)
 {
-    const ew_rect *r = &raster->scissor;
     const ew_target *target = &raster->target;
     /* dither leaves RGB565 alone */
     const int as_it_is = !EW_WITH_TARGET_FORMATS || target->format == EW_TARGET_RGB565;
     ew_piece *piece = &raster->work.now.span.fill.any.piece;
     piece->live = 0xFF;
-    for (int i = 0; i < EW_PIECE; i++) ew_decode_565(piece->colour[i], rgb565, ew_wide(target));
+    piece->n = EW_PIECE;
+    ew_piece_paint(piece, target, rgb565);
     for (uint16_t y = r->y0; y < r->y1; y++) {
         const size_t row = (size_t)(y - target->first_row) * target->stride;
         if (!as_it_is) {
@@ -145,7 +146,12 @@ void ew_raster_clear(ew_raster *raster, uint16_t rgb565)
         }
         for (uint16_t x = r->x0; x < r->x1; x++) {
             if (as_it_is) ((uint16_t *)target->colour)[row + x] = rgb565;
-            if (target->depth) target->depth[row + x] = 0;
+            if (depth) depth[row + x] = 0;
         }
     }
+}
+
+void ew_raster_clear(ew_raster *raster, uint16_t rgb565)
+{
+    ew_raster_fill(raster, &raster->scissor, rgb565, raster->target.depth);
 }

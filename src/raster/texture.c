@@ -21,22 +21,32 @@ static int is_power_of_two(uint32_t n) { return !(n & (n - 1u)); }
 
 static int is_size(uint32_t size) { return size >= 1 && size <= EW_TEXTURE_MAX; }
 
-int ew_texture_check(const ew_texture *t, int filter, int flags)
+int ew_texture_check_stored(const ew_texture *t, int flags)
 {
     if (!t->texels || !is_size(t->width) || !is_size(t->height) || t->format > EW_TEXTURE_PALETTE1 ||
-        t->wrap_u > EW_WRAP_MIRROR || t->wrap_v > EW_WRAP_MIRROR ||
-        t->levels > 32 - ew_clz32((uint32_t)t->width | t->height) ||
         (t->format >= EW_TEXTURE_PALETTE8 && (!t->palette || !ew_is_aligned16(t->palette))) ||
         (t->format == EW_TEXTURE_RGB565 && !ew_is_aligned16(t->texels)) || ((flags & EW_ALPHA_MASK) && !t->mask)) {
         return EW_ERR_ARGUMENT;
     }
-    if ((!EW_WITH_TEXTURE_FORMATS && t->format) || (!EW_WITH_MIPS && t->levels > 1) ||
-        (!EW_WITH_WRAPS && (t->wrap_u || t->wrap_v || !is_power_of_two(t->width) || !is_power_of_two(t->height))) ||
-        (!EW_WITH_BILINEAR && filter) || (!EW_WITH_MIPS && filter == EW_FILTER_TRILINEAR) ||
-        (!EW_WITH_CUTOUTS && (flags & (EW_COLOUR_KEY | EW_ALPHA_MASK)))) {
+    if ((!EW_WITH_TEXTURE_FORMATS && t->format) || (!EW_WITH_CUTOUTS && (flags & (EW_COLOUR_KEY | EW_ALPHA_MASK)))) {
         return EW_ERR_UNSUPPORTED;
     }
     return EW_OK;
+}
+
+int ew_texture_check(const ew_texture *t, int filter, int flags)
+{
+    const int error = ew_texture_check_stored(t, flags);
+    if (error == EW_ERR_ARGUMENT || t->wrap_u > EW_WRAP_MIRROR || t->wrap_v > EW_WRAP_MIRROR ||
+        t->levels > 32 - ew_clz32((uint32_t)t->width | t->height)) {
+        return EW_ERR_ARGUMENT;
+    }
+    if ((!EW_WITH_MIPS && t->levels > 1) ||
+        (!EW_WITH_WRAPS && (t->wrap_u || t->wrap_v || !is_power_of_two(t->width) || !is_power_of_two(t->height))) ||
+        (!EW_WITH_BILINEAR && filter) || (!EW_WITH_MIPS && filter == EW_FILTER_TRILINEAR)) {
+        return EW_ERR_UNSUPPORTED;
+    }
+    return error;
 }
 
 uint32_t ew_texture_inverse(uint32_t size)
@@ -213,6 +223,23 @@ EW_NOINLINE int is_cut(const ew_sampler *s, uint32_t column, uint32_t row)
 {
     if ((s->cuts & EW_ALPHA_MASK) && !ew_packed_get(s->mask + (size_t)row * s->mask_row_bytes, column, 0)) return 1;
     return (s->cuts & EW_COLOUR_KEY) && stored(s, column, row) == s->texture->key;
+}
+
+void ew_texture_open(ew_sampler *s, const ew_texture *texture, int cuts, uint8_t wide)
+{
+    s->texture = texture;
+    s->log2_bits = log2_bits_of(texture->format);
+    s->wide = wide;
+    s->cuts = (uint8_t)cuts;
+    s->mask = EW_WITH_CUTOUTS && (cuts & EW_ALPHA_MASK) ? texture->mask : NULL;
+    find_level(s, 0);
+}
+
+int ew_texture_texel(ew_sampler *s, uint32_t column, uint32_t row)
+{
+    if (EW_WITH_CUTOUTS && s->cuts && is_cut(s, column, row)) return 0;
+    fetch(s, column, row);
+    return 1;
 }
 
 #if EW_WITH_BILINEAR
