@@ -1,4 +1,4 @@
-/* Any bits at all through the public functions of the raster and geometry layers: an error
+/* Any bits at all through the public functions of the raster, 2D and geometry layers: an error
  * code or a drawing, nothing written outside of the target. Built with the sanitizers, which
  * watch what is read too: every block of memory that a structure points at is exactly as
  * large as the structure says.
@@ -16,6 +16,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "edgewalk/draw2d.h"
 #include "edgewalk/geometry.h"
 #include "edgewalk/light.h"
 
@@ -215,10 +216,26 @@ static void any_texture(ew_texture *t)
     if (texture_bytes(t, 16) > 1 << 16 && pick(32)) t->width = 1; /* large ones take time */
 }
 
+/* Memory as large as a texture says: texels, palette, mask, each of them missing now and then. */
+static void give_memory(ew_texture *t, uint8_t *made[3])
+{
+    /* sizes that a texture cannot have are not worth their memory: they have to be refused */
+    int possible = t->width <= EW_TEXTURE_MAX && t->height <= EW_TEXTURE_MAX;
+    size_t entries = (size_t)1 << (texel_bits(t) <= 8 ? texel_bits(t) : 0);
+    made[0] = block_of(possible ? texture_bytes(t, texel_bits(t)) : 1);
+    made[1] = block_of(2 * entries);
+    made[2] = block_of(possible ? texture_bytes(t, 1) : 1);
+    fill(made[0], possible ? texture_bytes(t, texel_bits(t)) % 4096 : 1);
+    t->texels = pick(50) ? made[0] : NULL;
+    t->palette = pick(50) ? (const uint16_t *)(const void *)made[1] : NULL;
+    t->mask = pick(50) ? made[2] : NULL;
+}
+
 static void new_material(void)
 {
     ew_texture t;
     ew_material m;
+    uint8_t *made[3];
     any_texture(&t);
     memset(&m, 0, sizeof m);
     m.tolerance = (uint16_t)(pick(2) ? 0 : pick(EW_TOLERANCE_MAX + 1));
@@ -227,15 +244,7 @@ static void new_material(void)
     m.blend = (uint8_t)(pick(2) ? 0 : pick(3)), m.filter = (uint8_t)(pick(2) ? 0 : pick(3));
     m.colour = (uint16_t)test_random();
     spoil(&m, sizeof m);
-    /* sizes that a texture cannot have are not worth their memory: they have to be refused */
-    int possible = t.width <= EW_TEXTURE_MAX && t.height <= EW_TEXTURE_MAX;
-    size_t entries = (size_t)1 << (texel_bits(&t) <= 8 ? texel_bits(&t) : 0);
-    uint8_t *made[3] = { block_of(possible ? texture_bytes(&t, texel_bits(&t)) : 1), block_of(2 * entries),
-                         block_of(possible ? texture_bytes(&t, 1) : 1) };
-    fill(made[0], possible ? texture_bytes(&t, texel_bits(&t)) % 4096 : 1);
-    t.texels = pick(50) ? made[0] : NULL;
-    t.palette = pick(50) ? (const uint16_t *)(const void *)made[1] : NULL;
-    t.mask = pick(50) ? made[2] : NULL;
+    give_memory(&t, made);
     m.texture = pick(4) ? &t : NULL;
     int error = ew_raster_set_material(&now.raster, &m);
     assert_true(is_answer(error));
@@ -274,6 +283,63 @@ static long draw_triangle(void)
     int result = ew_raster_triangle(&now.raster, &v[0], &v[1], &v[2]);
     assert_true(result == 0 || result == 1 || result == EW_ERR_RANGE);
     return result > 0;
+}
+
+/* ---- the 2D layer ---- */
+
+static int16_t any_pixel(int size) { return (int16_t)(pick(4) ? (int)pick((uint32_t)size + 40) - 20 : (int)pick(65536)); }
+
+static int draw_sprite(int16_t x, int16_t y)
+{
+    ew_texture t;
+    ew_sprite s;
+    uint8_t *made[3];
+    any_texture(&t);
+    t.levels = 1;
+    memset(&s, 0, sizeof s);
+    s.flags = (uint8_t)(pick(2) ? pick(128) : 16 * pick(4)), s.blend = (uint8_t)pick(4);
+    if (pick(2)) s.part.x1 = t.width, s.part.y1 = (uint16_t)pick(t.height + 1u), s.part.x0 = (uint16_t)pick(t.width + 1u);
+    spoil(&s.part, sizeof s.part);
+    give_memory(&t, made);
+    s.texture = pick(50) ? &t : NULL;
+    int error = ew_draw_sprite(&now.raster, &s, x, y);
+    for (int i = 0; i < 3; i++) free(made[i]);
+    return error;
+}
+
+static int draw_text(int16_t x, int16_t y)
+{
+    ew_font f;
+    memset(&f, 0, sizeof f);
+    f.width = (uint8_t)(1 + pick(12)), f.height = (uint8_t)(1 + pick(12)), f.gap = 1, f.line = f.height;
+    f.first = (uint8_t)pick(256), f.last = (uint8_t)pick(256), f.unknown = (uint8_t)pick(256);
+    if (pick(2)) f.first = 32, f.last = 126, f.unknown = 63;
+    spoil(&f, sizeof f);
+    size_t bytes = f.first <= f.last ? (f.last - f.first + 1u) * (1u + f.height * ((f.width + 7u) / 8u)) : 0;
+    uint8_t *glyphs = block_of(bytes);
+    char *text = (char *)block_of(21);
+    fill(glyphs, bytes), fill(text, 20);
+    text[20] = 0;
+    f.glyphs = pick(50) ? glyphs : NULL;
+    int error = ew_draw_text(&now.raster, &f, x, y, text, (uint16_t)test_random());
+    int32_t width = ew_text_width(&f, text);
+    assert_true(error ? width == error : width >= 0);
+    free(glyphs), free(text);
+    return error;
+}
+
+static void draw_2d(void)
+{
+    const int16_t x = any_pixel(now.target.width), y = any_pixel(now.target.height);
+    const uint16_t colour = (uint16_t)test_random();
+    int error = EW_OK;
+    switch (pick(4)) {
+    case 0: error = ew_draw_rect(&now.raster, x, y, (uint16_t)any_pixel(100), (uint16_t)any_pixel(100), colour, (uint8_t)pick(4)); break;
+    case 1: ew_draw_line(&now.raster, x, y, any_pixel(now.target.width), any_pixel(now.target.height), colour); break;
+    case 2: error = draw_sprite(x, y); break;
+    default: error = draw_text(x, y); break;
+    }
+    assert_true(is_answer(error));
 }
 
 /* ---- the geometry layer ---- */
@@ -356,7 +422,7 @@ static void any_bits(void **state)
         do new_target();
         while (!now.colour);
         for (int k = 0; k < CALLS; k++, calls++) {
-            uint32_t which = pick(16), watched = which > 3 && pick(16) == 0;
+            uint32_t which = pick(17), watched = which > 3 && pick(16) == 0;
             if (watched) remember_colours();
             switch (which) {
             case 0: new_target(); break;
@@ -370,6 +436,7 @@ static void any_bits(void **state)
             case 5:
             case 6:
             case 7: drawn += draw_mesh(); break;
+            case 8: draw_2d(); break;
             default: drawn += draw_triangle(); break;
             }
             if (watched) check_scissor();
