@@ -19,10 +19,10 @@ $(BIN)/ew-accuracy: $(addprefix $(B)/host_tests/accuracy/,accuracy.o scene_measu
 # ---- unit tests ----
 T := $(B)/tests
 UNIT := $(B)/host_tests/unit
-UNIT_TESTS := $(addprefix $(T)/test_,fixed recip quaternion light raster fill draw2d attributes clip geometry accuracy scene display display_faults stream readme)
+UNIT_TESTS := $(addprefix $(T)/test_,fixed recip quaternion light raster fill draw2d attributes clip geometry accuracy scene display display_faults panel stream readme)
 
 LINK_TEST = @mkdir -p $(@D); echo "LINK $@"; $(CC) $(HOST_CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka -lm
-$(addprefix $(T)/test_,fixed recip quaternion light scene display display_faults): $(T)/test_%: $(UNIT)/test_%.o $(UNIT)/unit.o $(LIB)
+$(addprefix $(T)/test_,fixed recip quaternion light scene display display_faults panel): $(T)/test_%: $(UNIT)/test_%.o $(UNIT)/unit.o $(LIB)
 	$(LINK_TEST)
 $(T)/test_raster: $(UNIT)/test_raster.o $(UNIT)/unit.o $(B)/host_tests/reference/referee.o $(LIB)
 	$(LINK_TEST)

@@ -11,7 +11,7 @@ BUILD = os.path.join(cross.ROOT, os.path.dirname(os.environ.get("EW_BIN", "build
 STACK_LIMIT = 512  # bytes, below: any public call
 
 
-HEADERS = ("fixed", "error", "raster", "draw2d", "geometry", "light", "scene", "display")
+HEADERS = ("fixed", "error", "raster", "draw2d", "geometry", "light", "scene", "display", "panel")
 LAYERS = ("fixed", "src/raster", "src/geometry", "src/scene", "src/display")
 
 

@@ -9,6 +9,7 @@
 #include "fixed.h"
 #include "geometry.h"
 #include "light.h"
+#include "panel.h"
 #include "raster.h"
 #include "scene.h"
 
