@@ -39,30 +39,32 @@ static void random_context(void)
     const int width = 1 + any(W), height = 1 + any(H);
     right = (ew_target){ .colour = expected.colour + GUARD, .depth = any(2) ? expected.depth + GUARD : NULL, .width = (uint16_t)width,
                          .height = (uint16_t)height, .stride = (uint16_t)((width + any(9) + per_byte - 1) / per_byte * per_byte),
-                         .format = (uint8_t)format, .dither = (uint8_t)(EW_WITH_DITHER && any(2)), .dither_y = (uint16_t)any(9) };
+                         .format = (uint8_t)format, .dither = (uint8_t)(EW_WITH_DITHER && any(2)), .first_row = (uint16_t)(any(2) ? any(20) : 0) };
     ew_target mine = right;
     mine.colour = drawn.colour + GUARD;
     mine.depth = right.depth ? drawn.depth + GUARD : NULL;
     memset(&raster, 0xA5, sizeof raster);
     assert_int_equal(ew_raster_init(&raster, &mine), EW_OK);
     if (any(2)) {
-        const int x0 = any(width + 1), y0 = any(height + 1);
-        const ew_rect scissor = { (uint16_t)x0, (uint16_t)y0, (uint16_t)(x0 + any(width - x0 + 1)), (uint16_t)(y0 + any(height - y0 + 1)) };
+        const int x0 = any(width + 1), from = any(height + 1), y0 = right.first_row + from;
+        const ew_rect scissor = { (uint16_t)x0, (uint16_t)y0, (uint16_t)(x0 + any(width - x0 + 1)), (uint16_t)(y0 + any(height - from + 1)) };
         assert_int_equal(ew_raster_set_scissor(&raster, &scissor), EW_OK);
     }
     const ew_rect *s = &raster.scissor;
-    test_context("format %d dither %d+%d of %dx%d stride %d scissor %d,%d to %d,%d", format, right.dither, right.dither_y, width,
-                 height, right.stride, s->x0, s->y0, s->x1, s->y1);
+    test_context("format %d dither %d of %dx%d from row %d stride %d scissor %d,%d to %d,%d", format, right.dither, width, height,
+                 right.first_row, right.stride, s->x0, s->y0, s->x1, s->y1);
 }
 
 /* One with room for something, the scissor the whole of it. */
 static void roomy_context(void)
 {
     do random_context();
-    while (right.width < 10 || right.height < 10);
+    while (right.width < 10 || right.height < 10 || right.first_row);
     const ew_rect whole = { 0, 0, right.width, right.height };
     assert_int_equal(ew_raster_set_scissor(&raster, &whole), EW_OK);
 }
+
+static void hold(int error) { assert_int_equal(error, EW_OK); }
 
 static void start(void)
 {
@@ -88,7 +90,7 @@ static ew_material plain(uint16_t colour, int blend)
 static void compare(void)
 {
     if (memcmp(&drawn, &expected, sizeof drawn) == 0) return;
-    for (int y = 0; y < right.height; y++) {
+    for (int y = right.first_row; y < right.first_row + right.height; y++) {
         for (int x = 0; x < right.width; x++) {
             unsigned value = ref_read(&raster.target, x, y), wanted = ref_read(&right, x, y);
             if (value != wanted) printf("# pixel %d,%d: %x, expected %x\n", x, y, value, wanted);
@@ -442,11 +444,57 @@ static void small_font_is_as_drawn(void **state)
     for (int code = '0'; code <= '9'; code++) assert_int_equal(glyph_at(&ew_font_small, (char)code)[0], 5);
 }
 
+/* ---- bands ---- */
+
+/* A little of everything, the same for each seed. */
+static void some_hud(uint64_t seed)
+{
+    ew_sprite sprite;
+    ew_texture t;
+    test_restart(seed);
+    for (int i = 0; i < 6; i++) {
+        const int16_t x = (int16_t)(any(2 * W) - W / 2), y = (int16_t)(any(2 * H) - H / 2);
+        const uint16_t colour = (uint16_t)test_random();
+        random_sprite(&sprite, &t);
+        hold(ew_draw_rect(&raster, x, y, (uint16_t)any(W), (uint16_t)any(H), colour, EW_WITH_BLENDS ? (uint8_t)any(3) : 0));
+        ew_draw_line(&raster, x, y, (int16_t)any(2 * W), (int16_t)any(H), (uint16_t)~colour);
+        hold(ew_draw_sprite(&raster, &sprite, y, x));
+        hold(ew_draw_text(&raster, &ew_font_small, (int16_t)(x / 2), (int16_t)(y / 2), "a\nHUD 123", colour));
+    }
+}
+
+/* Drawn once for each band of a picture, a HUD is the same as drawn once. */
+static void bands(void **state)
+{
+    (void)state;
+    int empty = 0;
+    for (uint64_t n = 0; n < 2000; n++) {
+        test_restart(n);
+        random_bytes(&before, sizeof before);
+        roomy_context();
+        start();
+        const int rows = 1 + any(right.height);
+        const size_t row_bytes = ref_row_bytes(right.stride, ref_target_bits(right.format));
+        some_hud(n);
+        expected = drawn;
+        drawn = before;
+        for (int row = 0; row < right.height; row += rows) {
+            const int height = row + rows < right.height ? rows : right.height - row;
+            uint16_t *depth = right.depth ? drawn.depth + GUARD + row * right.stride : NULL;
+            hold(ew_raster_set_rows(&raster, drawn.colour + GUARD + (size_t)row * row_bytes, depth, (uint16_t)row, (uint16_t)height));
+            some_hud(n);
+        }
+        assert_memory_equal(&drawn, &expected, sizeof drawn);
+        empty += memcmp(&drawn, &before, sizeof drawn) == 0;
+    }
+    assert_true(empty < 100);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST(rectangles), TEST(short_lines_exhaustively), TEST(lines_of_all_lengths), TEST(longest_lines),
-        TEST(sprites), TEST(bad_sprites), TEST(texts), TEST(endless_text), TEST(bad_fonts), TEST(small_font_is_as_drawn),
+        TEST(sprites), TEST(bad_sprites), TEST(texts), TEST(endless_text), TEST(bad_fonts), TEST(small_font_is_as_drawn), TEST(bands),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
