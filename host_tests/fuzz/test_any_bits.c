@@ -134,7 +134,8 @@ static void check_scissor(void)
     const ew_rect *r = &now.scissor;
     for (int y = 0; y < t->height; y++) {
         for (int x = 0; x < t->width; x++) {
-            if (x >= r->x0 && x < r->x1 && y >= r->y0 && y < r->y1) continue;
+            const int row = y + t->first_row;
+            if (x >= r->x0 && x < r->x1 && row >= r->y0 && row < r->y1) continue;
             size_t at = (size_t)y * t->stride + (size_t)x;
             assert_int_equal(pixel_at(now.colour, at), pixel_at(before, at));
         }
@@ -160,6 +161,7 @@ static void new_target(void)
     }
     t.stride = (uint16_t)(t.width + pick(9));
     if (pick(4)) t.format = (uint8_t)pick(6), t.dither = (uint8_t)pick(2);
+    if (pick(4) == 0) t.first_row = (uint16_t)pick(40);
     if (t.format >= EW_TARGET_GREY4) t.stride = (uint16_t)((t.stride + 7) & ~7);
     spoil(&t, sizeof t);
     int with_depth = pick(4) != 0;
@@ -186,14 +188,15 @@ static void new_target(void)
     now.colour = colour, now.depth = depth;
     now.target = t;
     now.raster = made;
-    now.scissor = (ew_rect){ 0, 0, t.width, t.height };
+    now.scissor = (ew_rect){ 0, t.first_row, t.width, (uint16_t)(t.first_row + t.height) };
 }
 
 static void new_scissor(void)
 {
-    ew_rect r = { 0, 0, now.target.width, now.target.height };
+    const uint16_t first = now.target.first_row;
+    ew_rect r = { 0, first, now.target.width, (uint16_t)(first + now.target.height) };
     if (pick(4) == 0) {
-        r.x0 = (uint16_t)pick(r.x1 + 1u), r.y0 = (uint16_t)pick(r.y1 + 1u);
+        r.x0 = (uint16_t)pick(r.x1 + 1u), r.y0 = (uint16_t)(first + pick(now.target.height + 1u));
         r.x1 = (uint16_t)(r.x0 + pick(r.x1 + 1u - r.x0)), r.y1 = (uint16_t)(r.y0 + pick(r.y1 + 1u - r.y0));
     }
     spoil(&r, sizeof r);
