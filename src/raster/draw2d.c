@@ -36,6 +36,20 @@ static ew_piece *paint(ew_raster *raster, uint16_t rgb565)
     return piece;
 }
 
+/* Stores a piece whose colours are all `rgb565`. */
+static void put_paint(const ew_raster *raster, const ew_piece *piece, uint16_t rgb565)
+{
+    const ew_target *target = &raster->target;
+    if (!ew_target_takes_words(target)) {
+        ew_target_put(target, piece, EW_BLEND_NONE);
+        return;
+    }
+    uint16_t *words = ew_target_words(target, piece->y) + piece->x;
+    for (int i = 0; i < piece->n; i++) {
+        if (piece->live >> i & 1) words[i] = rgb565;
+    }
+}
+
 /* Moves to the piece of a row that begins at x and ends before x1; n is EW_PIECE but for the last. */
 static void move_to(ew_piece *piece, uint16_t x, uint16_t y, uint16_t x1)
 {
@@ -96,10 +110,10 @@ static int32_t step_of(const line *l, int32_t offset)
 }
 
 /* The next pixel of a line, which is put together with others to the left of it. */
-static void plot(const ew_raster *raster, ew_piece *piece, int32_t x, int32_t y)
+static void plot(const ew_raster *raster, ew_piece *piece, int32_t x, int32_t y, uint16_t rgb565)
 {
     if (piece->n == EW_PIECE || y != piece->y || x != (int32_t)piece->x + piece->n) {
-        ew_target_put(&raster->target, piece, EW_BLEND_NONE);
+        if (piece->n) put_paint(raster, piece, rgb565);
         piece->x = (uint16_t)x;
         piece->y = (uint16_t)y;
         piece->n = 0;
@@ -134,11 +148,11 @@ void ew_draw_line(ew_raster *raster, int16_t x0, int16_t y0, int16_t x1, int16_t
     uint32_t offset = length ? sum / l.length : 0, rest = sum - offset * l.length;
     for (int32_t k = first; k <= last; k++) {
         const int32_t a = along + k, b = across + turn * (int32_t)offset;
-        plot(raster, piece, steep ? b : a, steep ? a : b);
+        plot(raster, piece, steep ? b : a, steep ? a : b, rgb565);
         rest += l.rise; /* below 2 length */
         if (rest >= l.length) rest -= l.length, offset++;
     }
-    ew_target_put(&raster->target, piece, EW_BLEND_NONE);
+    put_paint(raster, piece, rgb565);
 }
 
 /* ---- sprites ---- */
@@ -170,18 +184,40 @@ static void fetch_piece(ew_sampler *s, ew_piece *piece, uint32_t column, uint32_
     piece->live = (uint8_t)live;
 }
 
+/* Texels of RGB565 into a target of the same, from the texel at (column, row) on. */
+static void copy_words(const ew_target *target, const ew_rect *r, const ew_sprite *sprite, uint32_t column, uint32_t row)
+{
+    const ew_texture *t = sprite->texture;
+    const int keyed = sprite->flags & EW_COLOUR_KEY;
+    const uint16_t *from = (const uint16_t *)t->texels + (size_t)row * t->width + column;
+    const int n = (int)(r->x1 - r->x0);
+    for (uint16_t y = r->y0; y < r->y1; y++, from += t->width) {
+        uint16_t *to = ew_target_words(target, y) + r->x0;
+        for (int i = 0; i < n; i++) {
+            if (!keyed || from[i] != t->key) to[i] = from[i];
+        }
+    }
+}
+
 int ew_draw_sprite(ew_raster *raster, const ew_sprite *sprite, int16_t x, int16_t y)
 {
     ew_rect part, r;
     const int error = check_sprite(sprite, &part);
     if (error || !clip(raster, x, y, part.x1 - part.x0, part.y1 - part.y0, &r)) return error;
+    const uint32_t column = (uint32_t)((int32_t)part.x0 + r.x0 - x);
+    uint32_t row = (uint32_t)((int32_t)part.y0 + r.y0 - y);
+    if (ew_target_takes_words(&raster->target) && sprite->texture->format == EW_TEXTURE_RGB565 &&
+        !(sprite->flags & EW_ALPHA_MASK) && !sprite->blend) {
+        copy_words(&raster->target, &r, sprite, column, row);
+        return EW_OK;
+    }
     ew_piece *piece = piece_of(raster);
     ew_sampler *s = &raster->work.now.span.fill.any.sampler;
     ew_texture_open(s, sprite->texture, sprite->flags, ew_wide(&raster->target));
-    for (uint16_t row = r.y0; row < r.y1; row++) {
+    for (uint16_t down = r.y0; down < r.y1; down++, row++) {
         for (uint16_t at = r.x0; at < r.x1; at = (uint16_t)(at + EW_PIECE)) {
-            move_to(piece, at, row, r.x1);
-            fetch_piece(s, piece, (uint32_t)(part.x0 + (int32_t)at - x), (uint32_t)(part.y0 + (int32_t)row - y));
+            move_to(piece, at, down, r.x1);
+            fetch_piece(s, piece, column + at - r.x0, row);
             ew_target_put(&raster->target, piece, sprite->blend);
         }
     }
@@ -207,7 +243,7 @@ static const uint8_t *glyph_of(const ew_font *font, char c)
 
 static int32_t width_of(const ew_font *font, const uint8_t *glyph) { return smaller(*glyph, font->width); }
 
-static void draw_glyph(ew_raster *raster, const ew_font *font, const uint8_t *glyph, int32_t x, int32_t y)
+static void draw_glyph(ew_raster *raster, const ew_font *font, const uint8_t *glyph, int32_t x, int32_t y, uint16_t rgb565)
 {
     ew_rect r;
     if (!clip(raster, x, y, width_of(font, glyph), font->height, &r)) return;
@@ -219,7 +255,7 @@ static void draw_glyph(ew_raster *raster, const ew_font *font, const uint8_t *gl
             move_to(piece, at, row, r.x1);
             for (int i = 0; i < piece->n; i++) live |= (unsigned)ew_packed_get(bits, (uint32_t)(at - x + i), 0) << i;
             piece->live = (uint8_t)live;
-            ew_target_put(&raster->target, piece, EW_BLEND_NONE);
+            if (live) put_paint(raster, piece, rgb565);
         }
     }
 }
@@ -236,7 +272,7 @@ int ew_draw_text(ew_raster *raster, const ew_font *font, int16_t x, int16_t y, c
             at_y += font->line;
         } else if (at_x < raster->scissor.x1) { /* what lies beyond is not counted on: no sum grows for ever */
             const uint8_t *glyph = glyph_of(font, *text);
-            draw_glyph(raster, font, glyph, at_x, at_y);
+            draw_glyph(raster, font, glyph, at_x, at_y, rgb565);
             at_x += width_of(font, glyph) + font->gap;
         }
     }

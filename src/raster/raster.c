@@ -131,8 +131,7 @@ int ew_raster_set_fog(ew_raster *raster, uint16_t rgb565, ew_uq1_31 w_near, ew_u
 void ew_raster_fill(ew_raster *raster, const ew_rect *r, uint16_t rgb565, uint16_t *depth)
 {
     const ew_target *target = &raster->target;
-    /* dither leaves RGB565 alone */
-    const int as_it_is = !EW_WITH_TARGET_FORMATS || target->format == EW_TARGET_RGB565;
+    const int as_it_is = ew_target_takes_words(target);
     ew_piece *piece = &raster->work.now.span.fill.any.piece;
     piece->live = 0xFF;
     piece->n = EW_PIECE;

@@ -7,6 +7,19 @@
 /* Whether the core can draw into it: EW_OK, EW_ERR_ARGUMENT or EW_ERR_UNSUPPORTED. */
 int ew_target_check(const ew_target *target);
 
+/* RGB565 in the machine's order, which no conversion and no dither changes: what comes as a word of
+ * it may be stored as it is. */
+static inline int ew_target_takes_words(const ew_target *target)
+{
+    return !EW_WITH_TARGET_FORMATS || target->format == EW_TARGET_RGB565;
+}
+
+/* Such a target's row y. */
+static inline uint16_t *ew_target_words(const ew_target *target, uint16_t y)
+{
+    return (uint16_t *)target->colour + (size_t)(y - target->first_row) * target->stride;
+}
+
 /* Converts, dithers, blends and stores the live pixels of a piece. */
 void ew_target_put(const ew_target *target, const ew_piece *piece, int blend);
 
