@@ -132,20 +132,23 @@ void ew_raster_fill(ew_raster *raster, const ew_rect *r, uint16_t rgb565, uint16
 {
     const ew_target *target = &raster->target;
     const int as_it_is = ew_target_takes_words(target);
+    const uint32_t n = (uint32_t)r->x1 - r->x0;
     ew_piece *piece = &raster->work.now.span.fill.any.piece;
     piece->live = 0xFF;
     piece->n = EW_PIECE;
     ew_piece_paint(piece, target, rgb565);
     for (uint16_t y = r->y0; y < r->y1; y++) {
-        const size_t row = (size_t)(y - target->first_row) * target->stride;
-        if (!as_it_is) {
+        if (as_it_is) {
+            uint16_t *words = ew_target_words(target, y) + r->x0;
+            for (uint32_t i = 0; i < n; i++) words[i] = rgb565;
+        } else {
             piece->x = r->x0;
             piece->y = y;
             ew_target_fill(target, piece, r->x1);
         }
-        for (uint16_t x = r->x0; x < r->x1; x++) {
-            if (as_it_is) ((uint16_t *)target->colour)[row + x] = rgb565;
-            if (depth) depth[row + x] = 0;
+        if (depth) {
+            uint16_t *row = depth + (size_t)(y - target->first_row) * target->stride + r->x0;
+            for (uint32_t i = 0; i < n; i++) row[i] = 0;
         }
     }
 }
