@@ -64,7 +64,7 @@ EW_NOINLINE void write_depth(const ew_raster *raster, const ew_run *run, const e
     }
 }
 
-void ew_piece_paint(ew_piece *piece, const ew_target *target, uint16_t rgb565)
+EW_HOT void ew_piece_paint(ew_piece *piece, const ew_target *target, uint16_t rgb565)
 {
     uint16_t c[3];
     ew_decode_565(c, rgb565, ew_wide(target));
@@ -129,7 +129,7 @@ static void fill_piece(ew_raster *raster, const ew_run *run, int n)
     ew_target_put(&raster->target, piece, raster->material.blend);
 }
 
-void ew_fill_any(ew_raster *raster, ew_run *run, int32_t n)
+EW_HOT void ew_fill_any(ew_raster *raster, ew_run *run, int32_t n)
 {
     for (;;) {
         const int count = n < EW_PIECE ? (int)n : EW_PIECE;

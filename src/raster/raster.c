@@ -128,7 +128,7 @@ int ew_raster_set_fog(ew_raster *raster, uint16_t rgb565, ew_uq1_31 w_near, ew_u
 
 /* ---- clear ---- */
 
-void ew_raster_fill(ew_raster *raster, const ew_rect *r, uint16_t rgb565, uint16_t *depth)
+EW_HOT void ew_raster_fill(ew_raster *raster, const ew_rect *r, uint16_t rgb565, uint16_t *depth)
 {
     const ew_target *target = &raster->target;
     const int as_it_is = ew_target_takes_words(target);

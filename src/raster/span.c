@@ -631,7 +631,7 @@ EW_NOINLINE int rows_of_any(ew_raster *raster, int32_t row, int32_t end)
     return reached;
 }
 
-int ew_walk_rows(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
+EW_HOT int ew_walk_rows(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
 {
     if (!t->is_quick) return rows_of_any(raster, row, end);
     return t->is_wide ? rows_of_wide(raster, t, edge, row, end) : rows_of_narrow(raster, t, edge, row, end);

@@ -13,7 +13,7 @@
 
 static uint8_t log2_bits_of(int format)
 {
-    static const uint8_t log2_bits[] = { 4, 3, 3, 3, 2, 0 };
+    static const uint8_t log2_bits[] EW_HOT_TABLE = { 4, 3, 3, 3, 2, 0 };
     return EW_WITH_TEXTURE_FORMATS ? log2_bits[format] : 4;
 }
 
@@ -66,7 +66,7 @@ static uint32_t period_of(uint32_t size, int wrap)
 static uint64_t with_whole(uint64_t u, uint32_t whole) { return (uint64_t)whole << 32 | (uint32_t)(u & 0xFFFFFFFFu); }
 
 /* The whole part of a position modulo the period. */
-static uint32_t within_period(uint32_t whole, uint32_t size, int wrap, uint32_t inverse)
+static EW_HOT uint32_t within_period(uint32_t whole, uint32_t size, int wrap, uint32_t inverse)
 {
     const uint32_t period = period_of(size, wrap);
     uint32_t r;
@@ -161,7 +161,7 @@ static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
 
 /* The logarithm of the larger of the lengths of (du/dx, dv/dx) and (du/dy, dv/dy), by
  * OpenGL 2.1, 3.8.8: rho and lambda; half the logarithm of the length's square. */
-uint32_t ew_texture_level(const ew_run *run)
+EW_HOT uint32_t ew_texture_level(const ew_run *run)
 {
     uint32_t ux = magnitude(run->du), vx = magnitude(run->dv), uy = magnitude(run->u_down), vy = magnitude(run->v_down);
     int shift = 17 - ew_clz32(larger(larger(ux, vx), larger(uy, vy)));
@@ -182,7 +182,7 @@ uint32_t ew_texture_level(const ew_run *run)
 
 static uint32_t row_bytes_of(uint32_t width, int log2_bits) { return ((width << log2_bits) + 7u) >> 3; }
 
-static void find_level(ew_sampler *s, uint32_t level)
+static EW_HOT void find_level(ew_sampler *s, uint32_t level)
 {
     uint32_t width = s->texture->width, height = s->texture->height;
     s->texels = s->texture->texels;
@@ -303,7 +303,7 @@ EW_NOINLINE void store(const ew_sampler *s, uint16_t colour[3])
     }
 }
 
-void ew_texture_sample(ew_sampler *s, ew_piece *piece)
+EW_HOT void ew_texture_sample(ew_sampler *s, ew_piece *piece)
 {
     for (int i = 0; i < piece->n; i++) {
         if (piece->live >> i & 1) {
@@ -327,7 +327,7 @@ static uint8_t cuts_of(const ew_raster *raster)
     return EW_WITH_CUTOUTS ? raster->material.flags & (EW_COLOUR_KEY | EW_ALPHA_MASK) : 0;
 }
 
-void ew_texture_start(ew_sampler *s, const ew_raster *raster, const ew_run *run)
+EW_HOT void ew_texture_start(ew_sampler *s, const ew_raster *raster, const ew_run *run)
 {
     s->level = s->next_share = 0;
 #if EW_WITH_MIPS
@@ -348,7 +348,7 @@ void ew_texture_start(ew_sampler *s, const ew_raster *raster, const ew_run *run)
     start_level(s, raster, run);
 }
 
-int ew_texture_next(ew_sampler *s, const ew_raster *raster, const ew_run *run)
+EW_HOT int ew_texture_next(ew_sampler *s, const ew_raster *raster, const ew_run *run)
 {
     if (!EW_WITH_MIPS || !s->next_share) return 0;
     s->level++;
