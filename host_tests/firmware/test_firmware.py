@@ -138,6 +138,22 @@ for _target in MACHINES:
         setattr(Hash, "test_" + _target.replace("-", "_"), lambda self, t=_target: self.hold(t))
 
 
+MACHINES["m3_hot"] = MACHINES["m3"]  # one program only
+
+
+class InRam(unittest.TestCase):
+    """EW_HOT: the code of rows and pixels in RAM, called from flash far away."""
+
+    def test_the_picture_is_the_same(self):
+        need(self, "hash64x48", "m3_hot")
+        ran = board.Ran("hash64x48", "m3_hot")
+        self.assertEqual([line for line in ran.lines if line.startswith("frame ")], run(self, "hash64x48", REFERENCE))
+        frames = board.Frames("hash64x48", "m3_hot", "")
+        inside, outside = frames.addresses("ew_walk_rows", "fill_textured", "ew_recip_entries"), frames.addresses("ew_setup", "main")
+        self.assertGreaterEqual(min(inside), 0x20000000)
+        self.assertLess(max(outside), 0x400000)
+
+
 def host_pictures(scene, size, frames, fps):
     """What ew-render makes of the scene that is linked into the firmware: rows of RGB bytes."""
     with tempfile.TemporaryDirectory() as folder:
