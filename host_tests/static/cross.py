@@ -30,7 +30,8 @@ CONFIGURATIONS = {
     "raster, all fills": (("raster",), RASTER, []),
     "the same with transform and light": (("raster", "geometry", "light"), GEOMETRY, []),
     "textured, depth, in bands and lines": (("raster", "geometry", "picture"), GEOMETRY, NO_FILLS),
-    "everything, with scenes": (("fixed", "raster", "geometry", "picture", "light", "scene", "error"), GEOMETRY + ("src/scene",), []),
+    "everything, with scenes": (("fixed", "raster", "draw2d", "geometry", "picture", "light", "scene", "error"),
+                                GEOMETRY + ("src/scene",), []),
     "display, device side": (("display",), ("fixed", "src/display"), []),
 }
 

@@ -144,6 +144,16 @@
 #define EW_OWN_FRAME
 #endif
 
+/* Where the code of rows and pixels goes, and the tables that it reads: nothing, or a section that
+ * the firmware's linker script puts into RAM or an ITCM (docs/porting.md), as in
+ * -D'EW_HOT=__attribute__((section(".ew_hot")))'. Two sections: code and tables may not share one. */
+#ifndef EW_HOT
+#define EW_HOT
+#endif
+#ifndef EW_HOT_TABLE
+#define EW_HOT_TABLE
+#endif
+
 /* Called for every fragment, before the depth test, when a build defines EW_TRACE as
  * 1 (the host's accuracy tests do). 0, the default, leaves no trace in the code. */
 #ifndef EW_TRACE

@@ -6,9 +6,10 @@
 
 #include "edgewalk/raster_work.h"
 
+/* EW_NOINLINE: a step of rows, spans or fills. */
 #if defined(__GNUC__)
 #define EW_ALWAYS_INLINE static inline __attribute__((always_inline))
-#define EW_NOINLINE static __attribute__((noinline))
+#define EW_NOINLINE static __attribute__((noinline)) EW_HOT
 /* No instruction: keeps compilers from turning unrolled additions into sums that need more
  * registers than there are; and a pointer into the context a base of its own, which short
  * offsets on ARMv6-M need. */
@@ -17,7 +18,7 @@
 #define EW_COPY(to, from, bytes) ((void)__builtin_memcpy(to, from, bytes))
 #else
 #define EW_ALWAYS_INLINE static inline
-#define EW_NOINLINE static
+#define EW_NOINLINE static EW_HOT
 #define EW_COPY(to, from, bytes) \
     do { \
         for (size_t i_ = 0; i_ < (bytes); i_++) ((unsigned char *)(to))[i_] = ((const unsigned char *)(from))[i_]; \

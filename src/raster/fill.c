@@ -64,10 +64,10 @@ EW_NOINLINE void write_depth(const ew_raster *raster, const ew_run *run, const e
     }
 }
 
-EW_NOINLINE void paint(const ew_raster *raster, ew_piece *piece)
+EW_HOT void ew_piece_paint(ew_piece *piece, const ew_target *target, uint16_t rgb565)
 {
     uint16_t c[3];
-    ew_decode_565(c, raster->material.colour, ew_wide(&raster->target));
+    ew_decode_565(c, rgb565, ew_wide(target));
     for (int i = 0; i < piece->n; i++) {
         for (int k = 0; k < 3; k++) piece->colour[i][k] = c[k];
     }
@@ -122,7 +122,7 @@ static int fill_piece(ew_raster *raster, const ew_run *run, int n, int ready)
         do ew_texture_sample(s, piece);
         while (ew_texture_next(s, raster, run));
     } else {
-        paint(raster, piece);
+        ew_piece_paint(piece, &raster->target, raster->material.colour);
     }
     if (raster->target.depth && !(flags & EW_NO_DEPTH_WRITE)) write_depth(raster, run, piece);
     if (EW_WITH_SHADING && (flags & EW_SHADED)) shade(run, piece);
@@ -131,7 +131,7 @@ static int fill_piece(ew_raster *raster, const ew_run *run, int n, int ready)
     return !EW_WITH_MIPS || raster->texture.levels <= 1;
 }
 
-void ew_fill_any(ew_raster *raster, ew_run *run, int32_t n)
+EW_HOT void ew_fill_any(ew_raster *raster, ew_run *run, int32_t n)
 {
     for (int ready = 0;;) {
         const int count = n < EW_PIECE ? (int)n : EW_PIECE;

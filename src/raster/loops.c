@@ -129,7 +129,7 @@ EW_ALWAYS_INLINE uint32_t grey_of_565(uint32_t p)
 
 /* ---- the definition ---- */
 
-void ew_loop_start(ew_raster *raster, uint32_t y)
+EW_HOT void ew_loop_start(ew_raster *raster, uint32_t y)
 {
     const ew_triangle *t = &raster->work.triangle;
     const ew_target *target = &raster->target;
@@ -231,7 +231,7 @@ EW_ALWAYS_INLINE int fill(ew_raster *raster, int32_t n, const int has)
 LOOPS(X)
 #undef X
 
-int ew_loop_fill(ew_raster *raster, int32_t n)
+EW_HOT int ew_loop_fill(ew_raster *raster, int32_t n)
 {
     switch (raster->work.now.span.fill.any.position.loop) {
 #define X(name, has) case LOOP_##name: return EW_WITH_LOOP_##name ? fill_##name(raster, n) : 0;

@@ -21,7 +21,7 @@ static uint32_t smaller(uint32_t a, uint32_t b) { return a < b ? a : b; }
 /* ---- corners ---- */
 
 /* From the differences, with corner 0 at (x, y). */
-EW_NOINLINE void basis_init(ew_basis *b, int32_t x, int32_t y, const ew_corners *c)
+static EW_OWN_FRAME void basis_init(ew_basis *b, int32_t x, int32_t y, const ew_corners *c)
 {
     b->area = ew_mul_s32(b->dx1, b->dy2) - ew_mul_s32(b->dx2, b->dy1);
     b->reach = larger(larger(ew_abs32(b->dx1), ew_abs32(b->dx2)), larger(ew_abs32(b->dy1), ew_abs32(b->dy2)));

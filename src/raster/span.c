@@ -551,7 +551,7 @@ EW_NOINLINE void span_of_texture(ew_raster *raster, const ew_triangle *t, int32_
     }
 }
 
-int ew_rows_of_texture(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
+EW_HOT int ew_rows_of_texture(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
 {
     ew_plane32 *p = t->plane.narrow;
     ew_linear *l = &raster->work.now.span.linear;
@@ -614,7 +614,7 @@ static void span_of_any(ew_raster *raster, int32_t x, int32_t y, int32_t n)
     }
 }
 
-int ew_rows_of_any(ew_raster *raster, int32_t row, int32_t end)
+EW_HOT int ew_rows_of_any(ew_raster *raster, int32_t row, int32_t end)
 {
     ew_triangle *t = &raster->work.triangle;
     ew_edge *edge = raster->work.edge;

@@ -11,7 +11,7 @@ typedef struct layout {
     uint8_t log2_bits; /* of a pixel                                                      */
 } layout;
 
-static const layout layouts[] = {
+static const layout layouts[] EW_HOT_TABLE = {
     { 3, { 5, 6, 5 }, 4 },
 #if EW_WITH_TARGET_FORMATS
     { 3, { 5, 6, 5 }, 4 }, /* swapped                                                     */
@@ -43,7 +43,7 @@ int ew_target_check(const ew_target *target)
 #if EW_WITH_DITHER
 /* The 8 x 8 matrix of B. E. Bayer, "An optimum method for two-level rendition of
  * continuous-tone pictures", 1973: bits of y and of x ^ y in turn, the lowest ones highest. */
-static const uint8_t bayer[8][8] = {
+static const uint8_t bayer[8][8] EW_HOT_TABLE = {
     { 0, 32, 8, 40, 2, 34, 10, 42 },  { 48, 16, 56, 24, 50, 18, 58, 26 }, { 12, 44, 4, 36, 14, 46, 6, 38 },
     { 60, 28, 52, 20, 62, 30, 54, 22 }, { 3, 35, 11, 43, 1, 33, 9, 41 }, { 51, 19, 59, 27, 49, 17, 57, 25 },
     { 15, 47, 7, 39, 13, 45, 5, 37 }, { 63, 31, 55, 23, 61, 29, 53, 21 },
@@ -114,7 +114,7 @@ EW_NOINLINE void put_565(const ew_target *target, const ew_piece *piece)
     }
 }
 
-void ew_target_put(const ew_target *target, const ew_piece *piece, int blend)
+EW_HOT void ew_target_put(const ew_target *target, const ew_piece *piece, int blend)
 {
     if ((!EW_WITH_TARGET_FORMATS || target->format <= EW_TARGET_RGB565_SWAPPED) && !(EW_WITH_DITHER && target->dither) &&
         !(EW_WITH_BLENDS && blend)) {
@@ -157,7 +157,7 @@ void ew_target_put(const ew_target *target, const ew_piece *piece, int blend)
 }
 
 #if EW_WITH_TARGET_FORMATS
-void ew_target_fill(const ew_target *target, ew_piece *piece, uint16_t x1)
+EW_HOT void ew_target_fill(const ew_target *target, ew_piece *piece, uint16_t x1)
 {
     /* dither comes again after 8 pixels, and those are whole bytes */
     const uint32_t bytes = (uint32_t)1 << layouts[target->format].log2_bits;

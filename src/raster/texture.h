@@ -8,6 +8,15 @@
  * EW_ERR_UNSUPPORTED. */
 int ew_texture_check(const ew_texture *texture, int filter, int flags);
 
+/* The same of what lies in memory alone: of one texel at a time, of any size, whatever the wraps. */
+int ew_texture_check_stored(const ew_texture *texture, int flags);
+
+/* Makes ready for ew_texture_texel on the first level; `cuts` and `wide` as in ew_sampler. */
+void ew_texture_open(ew_sampler *s, const ew_texture *texture, int cuts, uint8_t wide);
+
+/* A texel's colour. Returns 0 if it is left out. */
+int ew_texture_texel(const ew_sampler *s, uint32_t column, uint32_t row, uint16_t colour[3]);
+
 /* floor(2^32 / size); 0 for a size of 1. */
 uint32_t ew_texture_inverse(uint32_t size);
 

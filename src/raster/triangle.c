@@ -21,7 +21,7 @@ int ew_raster_triangle(ew_raster *raster, const ew_raster_vertex *a, const ew_ra
 }
 
 /* Starts one side's edge on `row`. */
-EW_NOINLINE void start_edge(ew_raster *raster, uint8_t side, uint8_t from, uint8_t to, int32_t row)
+static EW_OWN_FRAME void start_edge(ew_raster *raster, uint8_t side, uint8_t from, uint8_t to, int32_t row)
 {
     const ew_corners *c = &raster->work.corners;
     ew_edge_start(&raster->work.edge[side], c->x[from], c->y[from], c->x[to], c->y[to], row);
@@ -45,7 +45,7 @@ static void order(ew_corners *c)
 
 /* Fills in work.corners. Returns 0 for a triangle that faces away, has no area or covers no
  * pixel centre inside the scissor, whose last row is here the one above `end`. */
-EW_NOINLINE int place(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *c,
+static EW_OWN_FRAME int place(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *c,
                       int32_t end)
 {
     ew_corners *corners = &raster->work.corners;
