@@ -59,7 +59,7 @@ class Library(unittest.TestCase):
         """A file includes public headers of its own layer and those below it only."""
         below = {"fixed": {"config", "error", "fixed"}}
         below["src/raster"] = below["fixed"] | {"draw2d", "raster", "raster_work"}
-        below["src/geometry"] = below["src/raster"] | {"geometry", "light"}
+        below["src/geometry"] = below["src/raster"] | {"geometry", "light", "picture"}
         below["src/scene"] = below["src/geometry"] | {"scene"}
         below["src/display"] = {"config", "error", "display", "panel"}
         for folder, allowed in below.items():

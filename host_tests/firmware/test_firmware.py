@@ -149,7 +149,7 @@ class InRam(unittest.TestCase):
         ran = board.Ran("hash64x48", "m3_hot")
         self.assertEqual([line for line in ran.lines if line.startswith("frame ")], run(self, "hash64x48", REFERENCE))
         frames = board.Frames("hash64x48", "m3_hot", "")
-        inside, outside = frames.addresses("ew_walk_rows", "fill_textured", "ew_recip_entries"), frames.addresses("ew_setup", "main")
+        inside, outside = frames.addresses("ew_rows_of_texture", "runs_of_texture", "ew_recip_entries"), frames.addresses("ew_setup", "main")
         self.assertGreaterEqual(min(inside), 0x20000000)
         self.assertLess(max(outside), 0x400000)
 

@@ -44,7 +44,8 @@ class Hot(unittest.TestCase):
     """EW_HOT and EW_HOT_TABLE: what rows and pixels need lies where a firmware puts it."""
 
     DEFINES = ['-DEW_HOT=__attribute__((section(".ew_hot")))', '-DEW_HOT_TABLE=__attribute__((section(".ew_hot_table")))']
-    ROOTS = ("ew_walk_rows", "ew_raster_fill")  # all rows of triangles go through the one, clears through the other
+    # all rows of triangles go through the first two, clears through the last
+    ROOTS = ("ew_rows_of_texture", "ew_rows_of_any", "ew_raster_fill")
     TABLES = {"ew_recip_entries", "layouts", "bayer"}
 
     def sections(self, target, objects):
@@ -74,7 +75,7 @@ class Hot(unittest.TestCase):
                         self.assertTrue(cross.HELPERS.fullmatch(name), name)
                 names = {name.split(":")[-1] for name in reached}
                 self.assertGreater(len(names), 20)
-                self.assertIn("fill_textured", names)
+                self.assertIn("runs_of_texture", names)
                 by_name = {}
                 for (_, name), section in found.items():
                     by_name.setdefault(name, set()).add(section)

@@ -35,7 +35,7 @@ enum {
 /* What is read most lies within short offsets. What follows the planes is for generic fills
  * only: ew_active leaves it out where it can. */
 typedef struct ew_triangle {
-    uint16_t run_scale;         /* of ew_run_length in run.h                     */
+    uint16_t run_scale;         /* of run.h                                      */
     int16_t run_exponent;
     uint16_t run_tolerance;     /* 1/16 px, 0 for runs of fixed length           */
     uint16_t longest, shortest; /* run, px                                       */
@@ -127,9 +127,9 @@ typedef struct ew_linear {
     uint32_t shade[3], dshade[3];
 } ew_linear;
 
-/* What w', u and v of a span change by, to be drawn moved. */
+/* What w' and attributes of a span change by, to be drawn moved. */
 typedef struct ew_move {
-    uint32_t w, u, v;
+    uint32_t w, u, v, shade[3];
 } ew_move;
 
 /* How long the runs of a piece may be: src/raster/run.h. */

@@ -20,22 +20,12 @@ EW_ALWAYS_INLINE uint32_t ew_root16(uint32_t product, int exponent)
     return root >> (15 - (exponent >> 1));
 }
 
-/* The longest run that the bound allows from a pixel with 1/z = w: N^2 |dw| <= 4 t w at its
- * far end, so with q = 4 t w / |dw|, N = sqrt q where w grows along the run and
- * sqrt(q + 4 t^2) - 2 t where it falls. Twice within a run is as far as w may grow or fall,
- * for the run's slope to be a number of 32 bits: N <= w / |dw| = q / 4 t. `twice` doubles t. */
-EW_ALWAYS_INLINE uint32_t ew_run_length(const ew_triangle *t, uint32_t w, uint32_t dw, int align, int twice)
-{
-    const uint32_t tolerance = (uint32_t)t->run_tolerance << twice;
-    uint32_t n16 = ew_root16((w >> 15) * t->run_scale, t->run_exponent - align + twice);
-    if ((int32_t)dw < 0) n16 = n16 > 2u * tolerance ? n16 - 2u * tolerance : 0;
-    uint32_t n = n16 >> 4;
-    if (4u * n < tolerance) n = 4u * n * n / tolerance;
-    return n < t->longest ? n : t->longest;
-}
+/* The bound allows N^2 |dw| <= 4 t w for a run of N pixels, with w at its far end: with w at its
+ * first pixel and q = 4 t w / |dw|, N^2 <= q where w grows along the run and N^2 + 4 t N <= q
+ * where it falls. Twice within a run is as far as w may grow or fall, for the run's slope to be a
+ * number of 32 bits: N >= 4 t. */
 
-/* Whether a span of n pixels, at most EW_LONGEST_RUN, may be one run; as in ew_run_length, but
- * exact in the square. */
+/* Whether a span of n pixels, at most EW_LONGEST_RUN, may be one run. */
 EW_ALWAYS_INLINE int ew_one_run_suffices(const ew_triangle *t, uint32_t w, uint32_t dw, int align, int32_t n)
 {
     /* the tangent's far end is the mirrored first pixel: one beyond the last where n is even */
@@ -48,7 +38,7 @@ EW_ALWAYS_INLINE int ew_one_run_suffices(const ew_triangle *t, uint32_t w, uint3
 /* ---- run after run ---- */
 
 /* 1/z is linear along a piece of a span: a run's length is found from that of the one before
- * it, with what stays the same. */
+ * it, with what stays the same. `twice` doubles t. */
 EW_ALWAYS_INLINE void ew_run_limit_init(ew_run_limit *limit, const ew_triangle *t, uint32_t dw, int align, int twice)
 {
     const int tolerance = (int)t->run_tolerance << twice, down = align - twice - t->run_exponent;
@@ -59,7 +49,7 @@ EW_ALWAYS_INLINE void ew_run_limit_init(ew_run_limit *limit, const ew_triangle *
     limit->down = down < 0 ? 0 : down > 31 ? 31 : down; /* w' has bits enough for 256 px at 0 */
 }
 
-/* n^2 <= q, or q - 4 t n where w falls; in 1/256. */
+/* In 1/256. */
 EW_ALWAYS_INLINE int ew_run_fits(const ew_run_limit *limit, uint32_t q, int32_t n)
 {
     return (uint32_t)n * (4u * (uint32_t)n + limit->fall) << 6 <= q; /* 2^24 at most */

@@ -221,7 +221,7 @@ static uint8_t choose_rung(const ew_raster *raster, const ew_basis *b, const ew_
 }
 
 /* A run of N pixels is displaced by at most N^2 |dw| / (4 w) (docs/error-bound.md). The
- * largest N is the root of 4 t w / |dw|; ew_run_length in run.h takes (16 N)^2 as
+ * largest N is the root of 4 t w / |dw|; run.h takes (16 N)^2 as
  * (w' / 2^15) run_scale 2^run_exponent. |dw| = m 2^-zeros, m normalised; 0 for m = 0. */
 static void run_scale_init(ew_triangle *t, uint32_t m, int zeros, uint32_t tolerance)
 {

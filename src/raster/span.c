@@ -152,7 +152,7 @@ EW_NOINLINE int move_init(ew_move *by, const ew_triangle *t, const ew_linear *l,
 {
     enum { LEAST = 8, MOST = 16 }; /* what lies up to 1 px outside of 8 is within the range of numbers */
     const uint32_t tolerance = t->run_tolerance;
-    by->w = by->u = by->v = 0;
+    by->w = by->u = by->v = by->shade[0] = by->shade[1] = by->shade[2] = 0;
     if (n < LEAST || tolerance == 0 || tolerance > MOST) return 0;
     const uint32_t sign = (int32_t)l->dw < 0 ? UINT32_MAX : 1u;
     const uint32_t fall = in_tolerance(l->dw * sign, tolerance);
@@ -160,14 +160,16 @@ EW_NOINLINE int move_init(ew_move *by, const ew_triangle *t, const ew_linear *l,
     by->w = 0u - fall;
     by->u = 0u - in_tolerance(l->du, tolerance) * sign;
     by->v = 0u - in_tolerance(l->dv, tolerance) * sign;
+    for (int i = 0; i < t->attributes - 2; i++) by->shade[i] = 0u - in_tolerance(l->dshade[i], tolerance) * sign;
     return 1;
 }
 
-EW_ALWAYS_INLINE void move(ew_linear *l, const ew_move *by, uint32_t sign)
+EW_ALWAYS_INLINE void move(ew_linear *l, const ew_move *by, uint32_t sign, int attributes)
 {
     l->w += by->w * sign;
     l->u += by->u * sign;
     l->v += by->v * sign;
+    for (int i = 0; i < attributes - 2; i++) l->shade[i] += by->shade[i] * sign;
 }
 
 /* Whether a piece is drawn pixel by pixel whatever its runs would be. */
@@ -179,11 +181,11 @@ EW_NOINLINE int32_t first_run(ew_span_work *span, const ew_triangle *t, int32_t 
 {
     ew_linear *l = &span->linear;
     span->left = n;
-    span->by.w = span->by.u = span->by.v = 0;
+    span->by.w = span->by.u = span->by.v = span->by.shade[0] = span->by.shade[1] = span->by.shade[2] = 0;
     if (is_per_pixel(t)) return 0;
     if (is_affine(t) || ew_one_run_suffices(t, l->w, l->dw, l->align, n)) return n;
     ew_run_limit_init(&span->limit, t, l->dw, l->align, move_init(&span->by, t, l, n));
-    move(l, &span->by, 1);
+    move(l, &span->by, 1, t->attributes);
     return ew_run_first(&span->limit, l->w);
 }
 
@@ -211,16 +213,22 @@ EW_NOINLINE int32_t runs_of_texture(ew_packing *k, const ew_triangle *t, ew_span
     }
 }
 
-/* Each pixel with a reciprocal of its own: all that are left of the piece, or as many as there may
- * be before the next look whether a run pays. Returns as runs_of_texture. */
-EW_NOINLINE int32_t pixels_of_texture(ew_packing *k, const ew_triangle *t, ew_span_work *span)
+/* All that are left of the piece, or as many as there may be before the next look whether a run
+ * pays. */
+static int32_t pixels_at_once(const ew_triangle *t, const ew_span_work *span)
 {
     enum { AT_ONCE = 16 };
+    return is_per_pixel(t) ? span->left : smaller(span->left, AT_ONCE);
+}
+
+/* Each pixel with a reciprocal of its own. Returns as runs_of_texture. */
+EW_NOINLINE int32_t pixels_of_texture(ew_packing *k, const ew_triangle *t, ew_span_work *span)
+{
     ew_linear *l = &span->linear;
     ew_pen *pen = &span->fill.pen;
-    const int32_t n = is_per_pixel(t) ? span->left : smaller(span->left, AT_ONCE);
+    const int32_t n = pixels_at_once(t, span);
     span->left -= n;
-    move(l, &span->by, UINT32_MAX); /* they are exact where they are */
+    move(l, &span->by, UINT32_MAX, 2); /* they are exact where they are */
 #if EW_TRACE
     for (int32_t i = 0; i < n; i++, advance(l, 1)) {
         divisor d = divisor_of(l->w, t->newton);
@@ -243,7 +251,7 @@ EW_NOINLINE int32_t pixels_of_texture(ew_packing *k, const ew_triangle *t, ew_sp
     pen->depth += n, pen->colour += n;
     l->w = w, l->u = u, l->v = v;
 #endif
-    move(l, &span->by, 1);
+    move(l, &span->by, 1, 2);
     return span->left ? ew_run_next(&span->limit, l->w, n) : 0;
 }
 
@@ -345,9 +353,8 @@ static void run_of_affine(ew_attribute_run *run, const ew_triangle *t, const ew_
     }
 }
 
-/* work.attributes of the next run, of at most n pixels, behind which work.linear moves. Returns
- * its length. */
-EW_NOINLINE int32_t next_of_any(ew_raster *raster, int32_t n)
+/* work.attributes of a run of n pixels, behind which work.linear moves. */
+EW_NOINLINE void next_of_any(ew_raster *raster, int32_t n)
 {
     const ew_triangle *t = &raster->work.triangle;
     ew_linear *l = &raster->work.now.span.linear;
@@ -355,28 +362,42 @@ EW_NOINLINE int32_t next_of_any(ew_raster *raster, int32_t n)
     EW_KEEP_ORDER(t);
     EW_KEEP_ORDER(l);
     EW_KEEP_ORDER(run);
-    if (t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_CONSTANT) {
+    if (is_affine(t)) {
         run_of_affine(run, t, l);
-        return n;
+        return;
     }
-    const int per_pixel = t->rung == EW_RUNG_TABLE || t->rung == EW_RUNG_EXACT;
-    int32_t m = per_pixel ? 1 : (int32_t)ew_run_length(t, l->w, l->dw, l->align, 0);
-    m = larger(1, smaller(m, n));
-    run_of_any(run, raster, t, l, (uint32_t)m >> 1);
-    advance(l, (uint32_t)m);
-    for (int i = 0; i < t->attributes - 2; i++) l->shade[i] += l->dshade[i] * (uint32_t)m;
-    return m;
+    run_of_any(run, raster, t, l, (uint32_t)n >> 1);
+    advance(l, (uint32_t)n);
+    for (int i = 0; i < t->attributes - 2; i++) l->shade[i] += l->dshade[i] * (uint32_t)n;
 }
 
+static void fill_next(ew_raster *raster, int32_t n)
+{
+    next_of_any(raster, n);
+    if (ew_loop_fill(raster, n)) return;
+    make_run(raster, n);
+    ew_fill_any(raster, &raster->work.now.span.fill.any.run, n);
+}
+
+/* The same runs and pixels as piece_of_texture has. */
 static void piece_of_any(ew_raster *raster, int32_t n)
 {
-    while (n > 0) {
-        const int32_t m = next_of_any(raster, n);
-        if (!ew_loop_fill(raster, m)) {
-            make_run(raster, m);
-            ew_fill_any(raster, &raster->work.now.span.fill.any.run, m);
+    const ew_triangle *t = &raster->work.triangle;
+    ew_span_work *span = &raster->work.now.span;
+    int32_t m = first_run(span, t, n);
+    for (;;) {
+        if (is_short(t, span, m)) {
+            m = pixels_at_once(t, span);
+            move(&span->linear, &span->by, UINT32_MAX, t->attributes);
+            for (int32_t i = 0; i < m; i++) fill_next(raster, 1);
+            move(&span->linear, &span->by, 1, t->attributes);
+        } else {
+            m = smaller(m, span->left);
+            fill_next(raster, m);
         }
-        n -= m;
+        span->left -= m;
+        if (span->left == 0) return;
+        m = ew_run_next(&span->limit, span->linear.w, m);
     }
 }
 
