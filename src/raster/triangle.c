@@ -91,7 +91,7 @@ static int set_up(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_
 }
 
 /* Draws the rows of work.triangle above `end`. */
-static int draw_rows(ew_raster *raster, int32_t end)
+EW_ALWAYS_INLINE int draw_rows(ew_raster *raster, int32_t end)
 {
     ew_triangle *t = &raster->work.triangle;
     ew_edge *edge = raster->work.edge;
