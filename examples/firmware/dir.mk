@@ -60,6 +60,8 @@ $(foreach t,$(BIG_TARGETS),$(call \
 $(foreach t,$(BIG_TARGETS) $(LITTLE_TARGETS) $(HOT_TARGETS),$(call \
   image,hash64x48,$(t),$(HASH) $(F)/crate.c,\
   $(CRATE_ROOM) -DPICTURE_WIDTH=64 -DPICTURE_HEIGHT=48))
+$(foreach t,$(BIG_TARGETS) $(LITTLE_TARGETS),$(call \
+  image,lines,$(t),examples/firmware/lines/main.c examples/firmware/picture_hash.c $(F)/crate.c,$(CRATE_ROOM)))
 
 # what each has room for: host_tests/firmware/same_bits.h
 room_avr := 0

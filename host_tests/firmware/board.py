@@ -41,7 +41,9 @@ for _compiler in ("gcc", "clang"):
 # Whose instruction timings stand for a target's (the Cortex-M0's are nearly the M0+'s; none are
 # published for M7 and M55), and the function that each example calls when a frame has been drawn.
 MODELS = {"microbit": "m0plus", "lm3s6965evb": "m3", **{t: t for t in ("m0plus", "m3", "m4", "m33", "rv32imc")}}
-FRAME_END = {"oled": "panel_show", "rgb565": "board_print", "hash": "picture_hash", "hash64x48": "picture_hash"}
+FRAME_END = {"oled": "panel_show", "rgb565": "board_print", "hash": "picture_hash", "hash64x48": "picture_hash",
+             "lines": "board_print"}
+FRAME_BEGIN = {"lines": "draw_picture"}  # of others: player_draw
 
 # Not QEMU for the AVR: version 7.2 stands still at libgcc's __clzsi2 (a skipped return), and with
 # -singlestep computes other bits.
@@ -75,7 +77,7 @@ def command(program, target):
 
 
 class Frames:
-    """Counts a program's instructions from player_draw to what it calls next, frame by frame.
+    """Counts a program's instructions from player_draw, or what stands for it, to what it calls next, frame by frame.
     `words` go to QEMU; afterwards `counted` has (instructions, cycles) of each frame, cycles being
     (low, typical, high) or None."""
 
@@ -83,7 +85,7 @@ class Frames:
         self.target, self.image, self.out = target, image(program, target), os.path.join(folder, "regions")
         self.words = []
         if program in FRAME_END and MACHINES[target].tools in (ARM, RISC_V):
-            begin, end = self.addresses("player_draw", FRAME_END[program])
+            begin, end = self.addresses(FRAME_BEGIN.get(program, "player_draw"), FRAME_END[program])
             self.words = ["-plugin", f"{COUNT},begin={begin:#x},end={end:#x},edges=1,out={self.out}"]
 
     def addresses(self, *names):

@@ -1,9 +1,11 @@
-/* The standard scenes on every counted rung, with a hash of colour and depth. */
+/* The standard scenes on every counted rung, with a hash of colour and depth; and in every memory mode,
+ * as tools/cycles counts them. */
 #include "same_bits.h"
 
 #if SAME_BITS_ROOM > 0
 
 #include "../../examples/firmware/picture_hash.h"
+#include "edgewalk/picture.h"
 #include "../../tools/cycles/cases.h"
 #include "../../tools/cycles/scene_data.h"
 
@@ -36,12 +38,62 @@ static void draw(const bench_scene *s, const bench_method *method, uint16_t tole
     print_hash(s->name, method->name, tolerance, size, picture_hash(hash, same_picture.depth, pixels));
 }
 
+/* ---- in bands and lines ---- */
+
+static ew_object object;
+static uint32_t band_hash;
+
+static void hash_band(void *user, const ew_target *band)
+{
+    const uint32_t pixels = (uint32_t)band->height * band->stride;
+    (void)user;
+    band_hash = picture_hash(band_hash, band->colour, pixels);
+    band_hash = picture_hash(band_hash, band->depth, pixels);
+}
+
+/* The list of scene B and its vertices do not fit in the memory of a picture of 64x48. */
+#if SAME_BITS_ROOM == 2
+static uint8_t band_memory[20000];
+#else
+#define band_memory same_picture
+#endif
+
+static void draw_in_bands(const bench_scene *s, const bench_mode *mode, uint16_t width, const char *size)
+{
+    const uint16_t height = (uint16_t)(width * 3u / 4u);
+    const ew_picture picture = { .width = width, .height = height, .buffers = 1, .rows = mode->rows, .end_row = height,
+                                 .scissor = { 0, 0, width, height }, .band = hash_band };
+    const ew_texture texture = { .texels = bench_texture, .width = 256, .height = 256 };
+    const ew_material material = { .texture = &texture, .tolerance = BENCH_MODE_TOLERANCE, .rung = EW_RUNG_AUTO };
+    const ew_mesh mesh = { .vertices = s->vertices, .indices = s->indices, .index_count = s->index_count, .uv_fraction_bits = 4 };
+    object.mesh = mesh;
+    object.vertex_count = s->vertex_count;
+    object.material = material;
+    band_hash = PICTURE_HASH_START;
+    ew_geometry_init(&geometry, &same_raster);
+    int error = bench_view(&object.transform, width);
+    if (!error) error = ew_picture_draw(&picture, &object, 1, &geometry, &band_memory, sizeof band_memory, NULL);
+    if (error) print_failure(s->name, mode->name);
+    print_hash(s->name, mode->name, BENCH_MODE_TOLERANCE, size, band_hash);
+}
+
+static void in_bands(const bench_scene *s)
+{
+    for (int i = 0; i < BENCH_MODES; i++) {
+        if (bench_modes[i].rows <= 16) draw_in_bands(s, &bench_modes[i], 64, "64x48");
+#if SAME_BITS_ROOM >= 3
+        if (bench_modes[i].rows <= 64) draw_in_bands(s, &bench_modes[i], 320, "320x240");
+#endif
+    }
+}
+
 void scene_bits(void)
 {
     const bench_method *method;
     uint16_t tolerance;
     for (int k = 0; k < bench_scene_count; k++) {
         if (bench_scenes[k].vertex_count > MOST_VERTICES) continue;
+        in_bands(&bench_scenes[k]);
         for (int i = 0; bench_case(i, &method, &tolerance); i++) {
             draw(&bench_scenes[k], method, tolerance, 64, "64x48");
 #if SAME_BITS_ROOM >= 3

@@ -295,7 +295,7 @@ static void merge_late(ew_picture_work *w)
 }
 
 /* Draws what was kept of triangles before `number`. Returns EW_OK or an error. */
-static EW_OWN_FRAME int draw_kept(ew_picture_work *w, uint32_t number)
+static inline int draw_kept(ew_picture_work *w, uint32_t number)
 {
     ew_place *link = w->kept_link;
     ew_raster *raster = w->geometry->raster;

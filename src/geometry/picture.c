@@ -75,9 +75,11 @@ size_t ew_picture_bytes(const ew_picture *picture, const ew_object *objects, uin
     enum { OF_ACTIVE = 112, AND = 448 };
     memory_plan plan;
     if (!plan_init(&plan, picture, objects, count)) return 0;
-    if (plan.bands == 1) return plan.least;
-    const uint32_t most = (uint32_t)(SIZE_MAX / 2u - plan.least - AND) / OF_ACTIVE;
-    return (size_t)plan.least + AND + (size_t)(active < most ? active : most) * OF_ACTIVE;
+    if (plan.bands == 1) return (size_t)plan.least;
+    const uint32_t most = SIZE_MAX < INT32_MAX ? (uint32_t)SIZE_MAX : INT32_MAX;
+    if (plan.least > most - AND) return (size_t)plan.least;
+    const uint32_t fit = (most - AND - plan.least) / OF_ACTIVE;
+    return (size_t)(plan.least + AND + (active < fit ? active : fit) * OF_ACTIVE);
 }
 
 /* The first thing in the memory. */
@@ -174,7 +176,7 @@ static inline int32_t first_row_of(const ew_picture_work *w, uint16_t a, uint16_
     uint16_t low = a < b ? a : b, high = a < b ? b : a;
     if (c < low) low = c;
     if (c > high) high = c;
-    if (high < NOT_YET) return low < high ? low : -1;
+    if (high < NOT_YET) return low < high ? (int32_t)low : -1;
     return low == NEAR || w->first >= w->end ? -1 : w->first;
 }
 

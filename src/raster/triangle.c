@@ -99,7 +99,7 @@ EW_ALWAYS_INLINE int draw_some(ew_raster *raster, int32_t row, int32_t end)
 }
 
 /* Draws the rows of work.triangle above `end`. */
-static int draw_rows(ew_raster *raster, int32_t end)
+EW_ALWAYS_INLINE int draw_rows(ew_raster *raster, int32_t end)
 {
     const ew_corners *k = &raster->work.corners;
     EW_KEEP_ORDER(k);
