@@ -50,7 +50,7 @@ static const uint8_t bayer[8][8] EW_HOT_TABLE = {
 };
 #endif
 
-const uint8_t *ew_thresholds(const ew_target *target, uint32_t y)
+EW_HOT const uint8_t *ew_thresholds(const ew_target *target, uint32_t y)
 {
     static const uint8_t none[8] = { 0 };
 #if EW_WITH_DITHER

@@ -205,7 +205,7 @@ static uint32_t stored(const ew_sampler *s, uint32_t column, uint32_t row)
     return ew_packed_get(line, column, s->log2_bits);
 }
 
-EW_NOINLINE void fetch(const ew_sampler *s, uint32_t column, uint32_t row, uint16_t colour[3])
+EW_NOINLINE void fetch_texel(const ew_sampler *s, uint32_t column, uint32_t row, uint16_t colour[3])
 {
     const ew_texture *t = s->texture;
     uint32_t value = stored(s, column, row);
@@ -238,7 +238,7 @@ void ew_texture_open(ew_sampler *s, const ew_texture *texture, int cuts, uint8_t
 EW_HOT int ew_texture_texel(const ew_sampler *s, uint32_t column, uint32_t row, uint16_t colour[3])
 {
     if (EW_WITH_CUTOUTS && s->cuts && is_cut(s, column, row)) return 0;
-    fetch(s, column, row, colour);
+    fetch_texel(s, column, row, colour);
     return 1;
 }
 
@@ -262,7 +262,7 @@ EW_NOINLINE void add_texels(ew_sampler *s, uint16_t colour[3])
     for (int k = 0; k < 4; k++) {
         const uint32_t weight = s->weight[k];
         if (k == 2) row = texel_index(&s->v, 1);
-        fetch(s, column[k & 1], row, s->texel);
+        fetch_texel(s, column[k & 1], row, s->texel);
         r += weight * s->texel[0], g += weight * s->texel[1], b += weight * s->texel[2];
     }
     colour[0] = (uint16_t)(r >> 5), colour[1] = (uint16_t)(g >> 5), colour[2] = (uint16_t)(b >> 5);
@@ -297,7 +297,7 @@ static void sample_pixel(ew_sampler *s, uint32_t fu, uint32_t fv, uint32_t colum
 #else
     (void)fu, (void)fv;
 #endif
-    fetch(s, column, row, colour);
+    fetch_texel(s, column, row, colour);
 }
 
 EW_HOT void ew_texture_sample(ew_sampler *s, ew_piece *piece)
