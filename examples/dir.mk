@@ -33,4 +33,12 @@ $(BIN)/fills: $(B)/examples/fills.o $(addprefix $(B)/tools/common/,image.o whole
 	$(CC) $(HOST_CFLAGS) $(LDFLAGS) -o $@ $^ -lpng -lz
 .PHONY: example-fills
 
+example-hud: build/hud.png  ## a HUD over a crate: build/hud.png
+build/hud.png: $(BIN)/hud $(B)/scenes/crate.ewb
+	$(BIN)/hud $(B)/scenes/crate.ewb $@
+$(BIN)/hud: $(B)/examples/hud.o $(COMMON_OBJS) $(LIB)
+	@mkdir -p $(@D)
+	$(CC) $(HOST_CFLAGS) $(LDFLAGS) -o $@ $^ -lpng -lz -lm
+.PHONY: example-hud
+
 include examples/firmware/dir.mk

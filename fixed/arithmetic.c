@@ -8,6 +8,22 @@ static int32_t saturate32(int64_t a)
     return (int32_t)a;
 }
 
+uint64_t ew_mul_u32_pieces(uint32_t a, uint32_t b)
+{
+    uint32_t ah = a >> 16, al = a & 0xFFFFu, bh = b >> 16, bl = b & 0xFFFFu;
+    uint32_t low = al * bl, middle = ah * bl + (low >> 16); /* <= (2^16 - 1)^2 + 2^16 - 1 */
+    uint32_t other = al * bh + (middle & 0xFFFFu);          /* likewise                    */
+    return (uint64_t)(ah * bh + (middle >> 16) + (other >> 16)) << 32 | (other << 16 | (low & 0xFFFFu));
+}
+
+int64_t ew_mul_s32_pieces(int32_t a, int32_t b)
+{
+    /* a = u - 2^32 for negative ones: b 2^32 less, modulo 2^64 */
+    uint64_t p = ew_mul_u32_pieces((uint32_t)a, (uint32_t)b);
+    uint32_t high = (uint32_t)(p >> 32) - ((uint32_t)b & (uint32_t)EW_ASR(a, 31)) - ((uint32_t)a & (uint32_t)EW_ASR(b, 31));
+    return (int64_t)((uint64_t)high << 32 | (uint32_t)p);
+}
+
 ew_q16_16 ew_q16_16_mul(ew_q16_16 a, ew_q16_16 b)
 {
     /* |a b| <= 2^62, so adding half a unit stays inside. */

@@ -118,17 +118,6 @@ int ew_mat44_mul_mat34(ew_mat44 *out, const ew_mat44 *a, const ew_mat34 *b)
     return EW_OK;
 }
 
-int ew_mat44_mul(ew_mat44 *out, const ew_mat44 *a, const ew_mat44 *b)
-{
-    ew_mat44 r;
-    for (int i = 0; i < 4; i++) {
-        int error = ew_row_mul_mat44(&r.row[i], &a->row[i], b);
-        if (error) return error;
-    }
-    *out = r;
-    return EW_OK;
-}
-
 /* The rotation matrix of a quaternion of any length but 0, without a square root: with
  * n = |q|^2 the elements are 1 - 2 (y^2 + z^2) / n, 2 (x y - w z) / n and so on. */
 static EW_OWN_FRAME int rotation_rows(int32_t m[3][3], const ew_quat *q)

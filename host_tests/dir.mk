@@ -19,21 +19,20 @@ $(BIN)/ew-accuracy: $(addprefix $(B)/host_tests/accuracy/,accuracy.o scene_measu
 # ---- unit tests ----
 T := $(B)/tests
 UNIT := $(B)/host_tests/unit
-UNIT_TESTS := $(addprefix $(T)/test_,fixed recip quaternion light raster fill attributes clip geometry accuracy scene display display_faults stream readme)
+UNIT_TESTS := $(addprefix $(T)/test_,fixed recip quaternion light raster fill draw2d attributes clip geometry accuracy scene display display_faults panel stream readme)
 
 LINK_TEST = @mkdir -p $(@D); echo "LINK $@"; $(CC) $(HOST_CFLAGS) $(LDFLAGS) -o $@ $^ -lcmocka -lm
-$(addprefix $(T)/test_,fixed recip quaternion light scene display display_faults): $(T)/test_%: $(UNIT)/test_%.o $(UNIT)/unit.o $(LIB)
+$(addprefix $(T)/test_,fixed recip quaternion light scene display display_faults panel): $(T)/test_%: $(UNIT)/test_%.o $(UNIT)/unit.o $(LIB)
 	$(LINK_TEST)
 $(T)/test_raster: $(UNIT)/test_raster.o $(UNIT)/unit.o $(B)/host_tests/reference/referee.o $(LIB)
 	$(LINK_TEST)
-$(T)/test_fill: $(UNIT)/test_fill.o $(UNIT)/unit.o $(B)/host_tests/reference/ref_fill.o $(LIB)
+$(T)/test_fill $(T)/test_draw2d: $(T)/test_%: $(UNIT)/test_%.o $(UNIT)/unit.o $(B)/host_tests/reference/ref_fill.o $(LIB)
 	$(LINK_TEST)
 $(T)/test_geometry $(T)/test_accuracy: $(T)/test_%: $(UNIT)/test_%.o $(UNIT)/unit.o $(REFEREE_OBJS) $(TRACE_OBJS)
 	$(LINK_TEST)
 $(T)/test_attributes $(T)/test_clip: $(T)/test_%: $(UNIT)/test_%.o $(UNIT)/unit.o $(TRACE_OBJS)
 	$(LINK_TEST)
-$(T)/test_stream: $(UNIT)/test_stream.o $(UNIT)/unit.o \
-  $(addprefix $(B)/tools/stream/,link.o panel_lines.o sender.o sim.o sim_panel.o) $(LIB)
+$(T)/test_stream: $(UNIT)/test_stream.o $(UNIT)/unit.o $(STREAM_TEST_OBJS) $(LIB)
 	$(LINK_TEST) -pthread
 # The program that README.md shows, cut out of it and compiled as it stands there.
 $(T)/readme_example.c: README.md
@@ -46,12 +45,17 @@ $(T)/test_readme: $(UNIT)/test_readme.o $(T)/readme_example.o $(UNIT)/unit.o $(B
 
 # ---- configurations: each needs a core of its own ----
 # recip-N: the reciprocals with a table of 2^N entries; raster-N: coverage at N subpixel bits;
-# geometry-pieces: products as on a core without a long multiply; fill-without-X: the fills
-# with EW_WITH_X = 0, under UBSan; EVERYTHING is all of them.
+# geometry-pieces: products as on a core without a long multiply; fill-without-X and
+# draw2d-without-X: with EW_WITH_X = 0, under UBSan; SOME_LOOPS and OTHER_LOOPS share the loops,
+# EVERYTHING is all of it.
 FILL_PARTS := SHADING FOG BLENDS CUTOUTS BILINEAR MIPS WRAPS TEXTURE_FORMATS TARGET_FORMATS DITHER
+SOME_LOOPS := LOOP_FLAT LOOP_NO_DEPTH LOOP_LIT LOOP_GREY4
+OTHER_LOOPS := LOOP_GOURAUD LOOP_KEYED LOOP_BILINEAR
+EVERYTHING := $(FILL_PARTS) $(SOME_LOOPS) $(OTHER_LOOPS)
 CONFIG_TESTS := $(foreach n,4 5 6 7 9,$(T)/test_recip-$(n)) $(foreach n,4 6,$(T)/test_raster-$(n)) $(T)/test_geometry-pieces \
-  $(foreach part,$(FILL_PARTS) EVERYTHING,$(T)/test_fill-without-$(part))
-$(T)/test_recip-%: host_tests/unit/test_recip.c host_tests/unit/unit.c fixed/recip.c fixed/recip_table.inc
+  $(foreach part,$(FILL_PARTS) SOME_LOOPS OTHER_LOOPS EVERYTHING,$(T)/test_fill-without-$(part)) $(T)/test_draw2d-without-EVERYTHING
+$(CONFIG_TESTS): $(wildcard include/edgewalk/*.h fixed/*.inc src/*/*.h src/*/*.inc $(addprefix host_tests/,unit/unit.h reference/*.h accuracy/*.h))
+$(T)/test_recip-%: host_tests/unit/test_recip.c host_tests/unit/unit.c fixed/recip.c
 	@mkdir -p $(@D); echo "CC $@"
 	@$(CC) $(HOST_CFLAGS) -DEW_RECIP_BITS=$* -o $@ $(filter %.c,$^) -lcmocka -lm
 $(T)/test_raster-%: host_tests/unit/test_raster.c host_tests/unit/unit.c host_tests/reference/referee.c \
@@ -62,11 +66,15 @@ $(T)/test_geometry-pieces: $(addprefix host_tests/,unit/test_geometry.c unit/uni
   reference/scenes.c accuracy/measure.c) $(filter fixed/% src/raster/% src/geometry/%,$(CORE_SRCS))
 	@mkdir -p $(@D); echo "CC $@"
 	@$(CC) $(HOST_CFLAGS) -DEW_LONG_MULTIPLY=0 -DEW_TRACE=1 -o $@ $(filter %.c,$^) -lcmocka -lm
-$(T)/test_fill-without-%: host_tests/unit/test_fill.c host_tests/unit/unit.c host_tests/reference/ref_fill.c \
-  $(filter fixed/% src/raster/%,$(CORE_SRCS)) $(wildcard src/raster/*.h include/edgewalk/*.h)
-	@mkdir -p $(@D); echo "CC $@"
-	@$(CC) $(HOST_CFLAGS) -Werror -DSHARE=8 -fsanitize=undefined -fno-sanitize-recover=all -o $@ $(filter %.c,$^) -lcmocka -lm \
-	  $(patsubst %,-DEW_WITH_%=0,$(if $(filter EVERYTHING,$*),$(FILL_PARTS),$*))
+define test_without
+$(T)/test_$(1)-without-%: host_tests/unit/test_$(1).c host_tests/unit/unit.c host_tests/reference/ref_fill.c \
+  $(filter fixed/% src/raster/%,$(CORE_SRCS))
+	@mkdir -p $$(@D); echo "CC $$@"
+	@$$(CC) $$(HOST_CFLAGS) -Werror -DSHARE=8 -fsanitize=undefined -fno-sanitize-recover=all -o $$@ $$(filter %.c,$$^) -lcmocka -lm \
+	  $$(patsubst %,-DEW_WITH_%=0,$$(if $$(filter SOME_LOOPS OTHER_LOOPS EVERYTHING,$$*),$$($$*),$$*))
+endef
+$(eval $(call test_without,fill))
+$(eval $(call test_without,draw2d))
 
 include host_tests/property/dir.mk
 include host_tests/mesa/dir.mk

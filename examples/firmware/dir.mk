@@ -25,7 +25,8 @@ $(F)/$(1)/libedgewalk.a: $(CORE_SRCS:%.c=$(F)/$(1)/%.o)
 	rm -f $$@
 	$$(patsubst %gcc,%gcc-ar,$$(patsubst clang,ar,$$(firstword $$(cc_$(1))))) rcs $$@ $$^
 endef
-$(foreach t,$(FIRMWARE_TARGETS),$(eval $(call firmware_core,$(t))))
+HOT_TARGETS := $(call here,m3_hot)
+$(foreach t,$(FIRMWARE_TARGETS) $(HOT_TARGETS),$(eval $(call firmware_core,$(t))))
 
 # ---- images ----
 # $(call image,PROGRAM,TARGET,SOURCES,DEFINITIONS)
@@ -56,7 +57,7 @@ $(foreach t,$(call here,lm3s6965evb),$(call image,oled_window,$(t),$(OLED),$(CRA
 $(foreach t,$(call here,rv32imc),$(call image,rgb565,$(t),examples/firmware/rgb565/main.c $(PLAYER) $(F)/courtyard.c))
 $(foreach t,$(BIG_TARGETS),$(call \
   image,hash,$(t),$(HASH) $(F)/courtyard.c))
-$(foreach t,$(BIG_TARGETS) $(LITTLE_TARGETS),$(call \
+$(foreach t,$(BIG_TARGETS) $(LITTLE_TARGETS) $(HOT_TARGETS),$(call \
   image,hash64x48,$(t),$(HASH) $(F)/crate.c,\
   $(CRATE_ROOM) -DPICTURE_WIDTH=64 -DPICTURE_HEIGHT=48))
 $(foreach t,$(BIG_TARGETS) $(LITTLE_TARGETS),$(call \

@@ -10,7 +10,7 @@ looks towards -z.
 import math
 import sys
 
-from glb import Glb, Mesh, add, look_at, main
+from glb import Glb, Mesh, add, main
 
 COURT = 4.0  # half the width between the two arcades
 ARCADE = 6.5  # x of the arcades' back walls
@@ -407,16 +407,8 @@ def build():
     build_arcade(court, 1)
     build_end(court)
     build_plinth(court)
-    eye = (1.3, 2.05, 4.3)
-    camera = glb.append("cameras", {"name": "view", "type": "perspective",
-                                    "perspective": {"yfov": math.radians(50), "znear": 0.25}})
-    glb.append("nodes", {"name": "courtyard", "mesh": glb.mesh("courtyard", court)})
-    glb.append("nodes", {"name": "knot", "mesh": glb.mesh("knot", knot),
-                         "translation": list(KNOT)})
-    glb.append("nodes", {"name": "camera", "camera": camera, "translation": list(eye),
-                         "rotation": look_at(eye, (-0.25, 1.55, -4.0))})
-    glb.json["scenes"] = [{"nodes": [0, 1, 2]}]
-    glb.json["scene"] = 0
+    glb.scene([("courtyard", court, (0.0, 0.0, 0.0)), ("knot", knot, KNOT)],
+              eye=(1.3, 2.05, 4.3), target=(-0.25, 1.55, -4.0), degrees=50)
     glb.turn(1, TURN_SECONDS)
     return glb.bytes(), court.triangles() + knot.triangles()
 

@@ -8,7 +8,7 @@ Textures are 32 x 32 and made for few greys: every edge that counts is one of li
 import math
 import sys
 
-from glb import Glb, Mesh, look_at, main
+from glb import Glb, Mesh, main
 
 HALF = 0.62  # of the crate's side
 FLOOR = 5.0  # half the floor's side; a tile is 1 wide
@@ -77,15 +77,8 @@ def build():
     ground, crate = Mesh(), build_crate()
     ground.patch("floor", (-FLOOR, 0, FLOOR), (2 * FLOOR, 0, 0), (0, 0, -2 * FLOOR), (2, 2),
                  lambda p: (p[0] / 2, p[2] / 2))
-    eye = (0.9, 2.1, 3.0)
-    camera = glb.append("cameras", {"name": "view", "type": "perspective",
-                                    "perspective": {"yfov": math.radians(42), "znear": 0.25}})
-    glb.append("nodes", {"name": "floor", "mesh": glb.mesh("floor", ground)})
-    glb.append("nodes", {"name": "crate", "mesh": glb.mesh("crate", crate), "translation": [0.0, 0.85, 0.0]})
-    glb.append("nodes", {"name": "camera", "camera": camera, "translation": list(eye),
-                         "rotation": look_at(eye, (0.0, 0.8, 0.0))})
-    glb.json["scenes"] = [{"nodes": [0, 1, 2]}]
-    glb.json["scene"] = 0
+    glb.scene([("floor", ground, (0.0, 0.0, 0.0)), ("crate", crate, (0.0, 0.85, 0.0))],
+              eye=(0.9, 2.1, 3.0), target=(0.0, 0.8, 0.0), degrees=42)
     glb.turn(1, TURN_SECONDS)
     return glb.bytes(), ground.triangles() + crate.triangles()
 

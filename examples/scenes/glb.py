@@ -137,6 +137,17 @@ class Glb:
                                "material": number})
         return self.append("meshes", {"name": name, "primitives": primitives})
 
+    def scene(self, objects, eye, target, degrees):
+        """A node for each (name, Mesh, translation), and a camera so many degrees high."""
+        camera = self.append("cameras", {"name": "view", "type": "perspective",
+                                         "perspective": {"yfov": math.radians(degrees), "znear": 0.25}})
+        for name, mesh, translation in objects:
+            self.append("nodes", {"name": name, "mesh": self.mesh(name, mesh), "translation": list(translation)})
+        self.append("nodes", {"name": "camera", "camera": camera, "translation": list(eye),
+                              "rotation": look_at(eye, target)})
+        self.json["scenes"] = [{"nodes": list(range(len(objects) + 1))}]
+        self.json["scene"] = 0
+
     def turn(self, node, seconds):
         """The node turns once around y, for ever. In quarters: less than half a turn from key to key."""
         turns = [i / 4 for i in range(5)]

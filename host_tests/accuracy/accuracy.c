@@ -97,7 +97,7 @@ int main(int argc, char **argv)
     if (isatty(STDERR_FILENO)) fputc('\n', stderr);
     double n = worst.textured ? (double)worst.textured : 1;
     printf("%s: %u frames of %ux%u against the referee: %ld fragments, %ld wrong pixels, %ld hit twice, "
-           "%ld of a colour that none may have\n",
+           "%ld of a colour outside the tolerance\n",
            p->scene, judged, p->width, p->height, worst.fragments, worst.wrong_px, worst.double_hits, worst.colour_px);
     printf("%s: texel error rms u %.4f v %.4f, worst u %.3f v %.3f, %.4f beyond the tolerance; depth worst %.3f units, "
            "%.3f over the disc of 1/256 px; "

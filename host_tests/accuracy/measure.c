@@ -158,10 +158,12 @@ static void mark_exact(const ew_raster *raster, const ref_triangle *truth, int *
     }
 }
 
-/* Difference of texture coordinates: the core's are modulo the texture's size. */
-static double uv_error(ew_q20_12 core, double exact, int log2_size)
+/* Difference of texture coordinates: the core's are modulo the texture's size, and taken for
+ * the one nearest to the middle of what is promised. */
+static double uv_error(ew_q20_12 core, double exact, double low, double high, int log2_size)
 {
-    return remainder(ldexp(core, -12) - exact, ldexp(1, log2_size));
+    double middle = (low + high) / 2;
+    return middle + remainder(ldexp(core, -12) - middle, ldexp(1, log2_size)) - exact;
 }
 
 /* Where one attribute of a triangle in perspective has a given value is a straight line on
@@ -219,12 +221,13 @@ static void judge_fragment(const logged_fragment *f, const ref_triangle *truth, 
         now.m.saturated++;
     }
     if (f->rung == EW_RUNG_CONSTANT) return;
-    double eu = uv_error(f->u, s.u, raster->log2_width), ev = uv_error(f->v, s.v, raster->log2_height);
+    double low[2], high[2];
+    attribute_range(truth, f->x + 0.5, f->y + 0.5, raster->material.tolerance / 16.0 + 1.0 / 256, low, high);
+    double eu = uv_error(f->u, s.u, low[0], high[0], raster->log2_width);
+    double ev = uv_error(f->v, s.v, low[1], high[1], raster->log2_height);
     now.m.textured++;
     now.m.u_max = fmax(now.m.u_max, fabs(eu));
     now.m.v_max = fmax(now.m.v_max, fabs(ev));
-    double low[2], high[2];
-    attribute_range(truth, f->x + 0.5, f->y + 0.5, raster->material.tolerance / 16.0 + 1.0 / 256, low, high);
     now.m.uv_off = fmax(now.m.uv_off, fmax(s.u + eu - high[0], low[0] - (s.u + eu)));
     now.m.uv_off = fmax(now.m.uv_off, fmax(s.v + ev - high[1], low[1] - (s.v + ev)));
     now.u_sum += eu * eu;

@@ -118,7 +118,7 @@ class Scene:
                 double_sided=flags == 1, tolerance=tolerance / 16))
 
     def read_primitives(self):
-        self.primitives = []
+        self.primitives, indices_used = [], 0
         for i in range(self.count("PRIM")):
             start = self.at("PRIM", i)
             first, count, material, first_index, index_count = struct.unpack_from("<IHHII", self.data, start)
@@ -126,8 +126,9 @@ class Scene:
             bits = self.data[start + 36]
             check(count >= 1 and first + count <= len(self.vertices), "PRIM: vertices inside VERT")
             check(material < len(self.materials), "PRIM: material exists")
-            check(index_count % 3 == 0 and first_index + index_count <= len(self.indices),
-                  "PRIM: indices inside INDX")
+            check(index_count % 3 == 0 and indices_used <= first_index <= len(self.indices) - index_count,
+                  "PRIM: indices inside INDX, behind those of the primitive before")
+            indices_used = first_index + index_count
             check(1 <= bits <= 12 and not any(self.data[start + 37:start + 40]), "PRIM: fraction bits, zeros")
             indices = self.indices[first_index:first_index + index_count]
             check(all(index < count for index in indices), "INDX: below the number of vertices")
@@ -142,9 +143,11 @@ class Scene:
             quaternion = [q / 16384 for q in key[3:7]]
             check(abs(math.hypot(*quaternion) - 1) <= 1 / 256, "KEYS: quaternion of length 1")
             keys.append((key[:3], quaternion, key[7:]))
-        self.tracks = []
+        self.tracks, keys_used = [], 0
         for first, count, interval, et, es in self.unpack("TRAK", "<IHHhh"):
-            check(count >= 1 and first + count <= len(keys), "TRAK: keys inside KEYS")
+            check(count >= 1 and keys_used <= first <= len(keys) - count,
+                  "TRAK: keys inside KEYS, behind those of the track before")
+            keys_used = first + count
             check(interval >= 1 and -1000 <= et <= 1000 and -1000 <= es <= 1000, "TRAK: interval, exponents")
             track = SimpleNamespace(interval=interval, keys=[])
             for t, q, s in keys[first:first + count]:

@@ -35,8 +35,12 @@ class Library(unittest.TestCase):
         self.assertLessEqual(symbols(os.path.join(ROOT, LIBRARY))[1], {"memcpy", "memset"})
 
     def test_has_no_mutable_globals(self):
-        kinds = {(kind, name) for kind, name in symbols(os.path.join(ROOT, LIBRARY))[0] if kind in "dDbBcCsS"}
-        self.assertEqual(kinds, set())
+        # Name|Value|Class|Type|Size|Line|Section; a constant that holds an address is in .data.rel.ro
+        text = subprocess.run(["nm", "-f", "sysv", os.path.join(ROOT, LIBRARY)], check=True, stdout=subprocess.PIPE, text=True).stdout
+        rows = [[cell.strip() for cell in line.split("|")] for line in text.splitlines() if line.count("|") == 6]
+        self.assertIn("T", {row[2] for row in rows})
+        self.assertEqual({(row[2], row[0]) for row in rows if row[2] in "dDbBcCsS" and row[2]
+                          and not row[6].startswith(".data.rel.ro")}, set())
 
     def test_external_names_have_the_prefix(self):
         names = {name for kind, name in symbols(os.path.join(ROOT, LIBRARY))[0] if kind in "TRDB"}
@@ -54,10 +58,10 @@ class Library(unittest.TestCase):
     def test_arrows_point_one_way(self):
         """A file includes public headers of its own layer and those below it only."""
         below = {"fixed": {"config", "error", "fixed"}}
-        below["src/raster"] = below["fixed"] | {"raster", "raster_work"}
+        below["src/raster"] = below["fixed"] | {"draw2d", "raster", "raster_work"}
         below["src/geometry"] = below["src/raster"] | {"geometry", "light"}
         below["src/scene"] = below["src/geometry"] | {"scene"}
-        below["src/display"] = {"config", "error", "display"}
+        below["src/display"] = {"config", "error", "display", "panel"}
         for folder, allowed in below.items():
             for path in sources(folder):
                 with open(path, encoding="utf-8") as source:

@@ -48,6 +48,7 @@ int main(void)
 {
     fixed_bits();
     triangle_bits();
+    hud_bits();
     scene_bits();
     board_print_stack();
     board_print("end\n");

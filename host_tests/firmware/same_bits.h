@@ -7,7 +7,7 @@
 #include "edgewalk/raster.h"
 
 /* What a target has room for:
- *   0  fixed-point functions and the set of triangles (AVR: 8 KB of RAM, 16-bit int)
+ *   0  fixed-point functions, the set of triangles and the HUD (AVR: 8 KB of RAM, 16-bit int)
  *   1  and the standard scenes A, C, D and E at 64x48 (16 KB)
  *   2  and scene B, whose vertices take 17 KB (64 KB)
  *   3  and all five at 320x240 (more than 330 KB) */
@@ -39,6 +39,7 @@ void print_failure(const char *scene, const char *what);
 
 void fixed_bits(void);
 void triangle_bits(void);
+void hud_bits(void);
 void scene_bits(void);
 
 /* Pseudo-random numbers, the same everywhere. */

@@ -91,7 +91,7 @@ def expected_cases(target, reference):
         return {case for case in reference if case[3] != "320x240"}
     if target == LITTLE:
         return {case for case in reference if case[3] != "320x240" and case[0] != "B"}
-    return {case for case in reference if case[0] in ("fixed", "triangles")}
+    return {case for case in reference if case[0] in ("fixed", "triangles", "hud")}
 
 
 class SameBits(unittest.TestCase):
@@ -137,6 +137,22 @@ for _target in MACHINES:
     setattr(SameBits, "test_" + _target.replace("-", "_"), lambda self, t=_target: self.hold(t))
     if _target != "avr":
         setattr(Hash, "test_" + _target.replace("-", "_"), lambda self, t=_target: self.hold(t))
+
+
+MACHINES["m3_hot"] = MACHINES["m3"]  # one program only
+
+
+class InRam(unittest.TestCase):
+    """EW_HOT: the code of rows and pixels in RAM, called from flash far away."""
+
+    def test_the_picture_is_the_same(self):
+        need(self, "hash64x48", "m3_hot")
+        ran = board.Ran("hash64x48", "m3_hot")
+        self.assertEqual([line for line in ran.lines if line.startswith("frame ")], run(self, "hash64x48", REFERENCE))
+        frames = board.Frames("hash64x48", "m3_hot", "")
+        inside, outside = frames.addresses("ew_walk_rows", "fill_textured", "ew_recip_entries"), frames.addresses("ew_setup", "main")
+        self.assertGreaterEqual(min(inside), 0x20000000)
+        self.assertLess(max(outside), 0x400000)
 
 
 def host_pictures(scene, size, frames, fps):

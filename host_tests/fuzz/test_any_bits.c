@@ -1,4 +1,4 @@
-/* Any bits at all through the public functions of the raster and geometry layers: an error
+/* Any bits at all through the public functions of the raster, 2D and geometry layers: an error
  * code or a drawing, nothing written outside of the target. Built with the sanitizers, which
  * watch what is read too: every block of memory that a structure points at is exactly as
  * large as the structure says.
@@ -16,6 +16,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "edgewalk/draw2d.h"
 #include "edgewalk/geometry.h"
 #include "edgewalk/light.h"
 
@@ -133,7 +134,8 @@ static void check_scissor(void)
     const ew_rect *r = &now.scissor;
     for (int y = 0; y < t->height; y++) {
         for (int x = 0; x < t->width; x++) {
-            if (x >= r->x0 && x < r->x1 && y >= r->y0 && y < r->y1) continue;
+            const int row = y + t->first_row;
+            if (x >= r->x0 && x < r->x1 && row >= r->y0 && row < r->y1) continue;
             size_t at = (size_t)y * t->stride + (size_t)x;
             assert_int_equal(pixel_at(now.colour, at), pixel_at(before, at));
         }
@@ -159,6 +161,7 @@ static void new_target(void)
     }
     t.stride = (uint16_t)(t.width + pick(9));
     if (pick(4)) t.format = (uint8_t)pick(6), t.dither = (uint8_t)pick(2);
+    if (pick(4) == 0) t.first_row = (uint16_t)pick(40);
     if (t.format >= EW_TARGET_GREY4) t.stride = (uint16_t)((t.stride + 7) & ~7);
     spoil(&t, sizeof t);
     int with_depth = pick(4) != 0;
@@ -185,14 +188,15 @@ static void new_target(void)
     now.colour = colour, now.depth = depth;
     now.target = t;
     now.raster = made;
-    now.scissor = (ew_rect){ 0, 0, t.width, t.height };
+    now.scissor = (ew_rect){ 0, t.first_row, t.width, (uint16_t)(t.first_row + t.height) };
 }
 
 static void new_scissor(void)
 {
-    ew_rect r = { 0, 0, now.target.width, now.target.height };
+    const uint16_t first = now.target.first_row;
+    ew_rect r = { 0, first, now.target.width, (uint16_t)(first + now.target.height) };
     if (pick(4) == 0) {
-        r.x0 = (uint16_t)pick(r.x1 + 1u), r.y0 = (uint16_t)pick(r.y1 + 1u);
+        r.x0 = (uint16_t)pick(r.x1 + 1u), r.y0 = (uint16_t)(first + pick(now.target.height + 1u));
         r.x1 = (uint16_t)(r.x0 + pick(r.x1 + 1u - r.x0)), r.y1 = (uint16_t)(r.y0 + pick(r.y1 + 1u - r.y0));
     }
     spoil(&r, sizeof r);
@@ -215,10 +219,26 @@ static void any_texture(ew_texture *t)
     if (texture_bytes(t, 16) > 1 << 16 && pick(32)) t->width = 1; /* large ones take time */
 }
 
+/* Memory as large as a texture says: texels, palette, mask, each of them missing now and then. */
+static void give_memory(ew_texture *t, uint8_t *made[3])
+{
+    /* sizes that a texture cannot have are not worth their memory: they have to be refused */
+    int possible = t->width <= EW_TEXTURE_MAX && t->height <= EW_TEXTURE_MAX;
+    size_t entries = (size_t)1 << (texel_bits(t) <= 8 ? texel_bits(t) : 0);
+    made[0] = block_of(possible ? texture_bytes(t, texel_bits(t)) : 1);
+    made[1] = block_of(2 * entries);
+    made[2] = block_of(possible ? texture_bytes(t, 1) : 1);
+    fill(made[0], possible ? texture_bytes(t, texel_bits(t)) % 4096 : 1);
+    t->texels = pick(50) ? made[0] : NULL;
+    t->palette = pick(50) ? (const uint16_t *)(const void *)made[1] : NULL;
+    t->mask = pick(50) ? made[2] : NULL;
+}
+
 static void new_material(void)
 {
     ew_texture t;
     ew_material m;
+    uint8_t *made[3];
     any_texture(&t);
     memset(&m, 0, sizeof m);
     m.tolerance = (uint16_t)(pick(2) ? 0 : pick(EW_TOLERANCE_MAX + 1));
@@ -227,15 +247,7 @@ static void new_material(void)
     m.blend = (uint8_t)(pick(2) ? 0 : pick(3)), m.filter = (uint8_t)(pick(2) ? 0 : pick(3));
     m.colour = (uint16_t)test_random();
     spoil(&m, sizeof m);
-    /* sizes that a texture cannot have are not worth their memory: they have to be refused */
-    int possible = t.width <= EW_TEXTURE_MAX && t.height <= EW_TEXTURE_MAX;
-    size_t entries = (size_t)1 << (texel_bits(&t) <= 8 ? texel_bits(&t) : 0);
-    uint8_t *made[3] = { block_of(possible ? texture_bytes(&t, texel_bits(&t)) : 1), block_of(2 * entries),
-                         block_of(possible ? texture_bytes(&t, 1) : 1) };
-    fill(made[0], possible ? texture_bytes(&t, texel_bits(&t)) % 4096 : 1);
-    t.texels = pick(50) ? made[0] : NULL;
-    t.palette = pick(50) ? (const uint16_t *)(const void *)made[1] : NULL;
-    t.mask = pick(50) ? made[2] : NULL;
+    give_memory(&t, made);
     m.texture = pick(4) ? &t : NULL;
     int error = ew_raster_set_material(&now.raster, &m);
     assert_true(is_answer(error));
@@ -274,6 +286,63 @@ static long draw_triangle(void)
     int result = ew_raster_triangle(&now.raster, &v[0], &v[1], &v[2]);
     assert_true(result == 0 || result == 1 || result == EW_ERR_RANGE);
     return result > 0;
+}
+
+/* ---- the 2D layer ---- */
+
+static int16_t any_pixel(int size) { return (int16_t)(pick(4) ? (int)pick((uint32_t)size + 40) - 20 : (int)pick(65536)); }
+
+static int draw_sprite(int16_t x, int16_t y)
+{
+    ew_texture t;
+    ew_sprite s;
+    uint8_t *made[3];
+    any_texture(&t);
+    t.levels = 1;
+    memset(&s, 0, sizeof s);
+    s.flags = (uint8_t)(pick(2) ? pick(128) : 16 * pick(4)), s.blend = (uint8_t)pick(4);
+    if (pick(2)) s.part.x1 = t.width, s.part.y1 = (uint16_t)pick(t.height + 1u), s.part.x0 = (uint16_t)pick(t.width + 1u);
+    spoil(&s.part, sizeof s.part);
+    give_memory(&t, made);
+    s.texture = pick(50) ? &t : NULL;
+    int error = ew_draw_sprite(&now.raster, &s, x, y);
+    for (int i = 0; i < 3; i++) free(made[i]);
+    return error;
+}
+
+static int draw_text(int16_t x, int16_t y)
+{
+    ew_font f;
+    memset(&f, 0, sizeof f);
+    f.width = (uint8_t)(1 + pick(12)), f.height = (uint8_t)(1 + pick(12)), f.gap = 1, f.line = f.height;
+    f.first = (uint8_t)pick(256), f.last = (uint8_t)pick(256), f.unknown = (uint8_t)pick(256);
+    if (pick(2)) f.first = 32, f.last = 126, f.unknown = 63;
+    spoil(&f, sizeof f);
+    size_t bytes = f.first <= f.last ? (f.last - f.first + 1u) * (1u + f.height * ((f.width + 7u) / 8u)) : 0;
+    uint8_t *glyphs = block_of(bytes);
+    char *text = (char *)block_of(21);
+    fill(glyphs, bytes), fill(text, 20);
+    text[20] = 0;
+    f.glyphs = pick(50) ? glyphs : NULL;
+    int error = ew_draw_text(&now.raster, &f, x, y, text, (uint16_t)test_random());
+    int32_t width = ew_text_width(&f, text);
+    assert_true(error ? width == error : width >= 0);
+    free(glyphs), free(text);
+    return error;
+}
+
+static void draw_2d(void)
+{
+    const int16_t x = any_pixel(now.target.width), y = any_pixel(now.target.height);
+    const uint16_t colour = (uint16_t)test_random();
+    int error = EW_OK;
+    switch (pick(4)) {
+    case 0: error = ew_draw_rect(&now.raster, x, y, (uint16_t)any_pixel(100), (uint16_t)any_pixel(100), colour, (uint8_t)pick(4)); break;
+    case 1: ew_draw_line(&now.raster, x, y, any_pixel(now.target.width), any_pixel(now.target.height), colour); break;
+    case 2: error = draw_sprite(x, y); break;
+    default: error = draw_text(x, y); break;
+    }
+    assert_true(is_answer(error));
 }
 
 /* ---- the geometry layer ---- */
@@ -356,7 +425,7 @@ static void any_bits(void **state)
         do new_target();
         while (!now.colour);
         for (int k = 0; k < CALLS; k++, calls++) {
-            uint32_t which = pick(16), watched = which > 3 && pick(16) == 0;
+            uint32_t which = pick(17), watched = which > 3 && pick(16) == 0;
             if (watched) remember_colours();
             switch (which) {
             case 0: new_target(); break;
@@ -370,6 +439,7 @@ static void any_bits(void **state)
             case 5:
             case 6:
             case 7: drawn += draw_mesh(); break;
+            case 8: draw_2d(); break;
             default: drawn += draw_triangle(); break;
             }
             if (watched) check_scissor();

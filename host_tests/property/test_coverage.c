@@ -44,13 +44,6 @@ static const struct {
              { EW_RUNG_TABLE, 0, 0, 1 },    { EW_RUNG_EXACT, 0, EW_NO_DEPTH_TEST, 1 } };
 enum { WAYS = sizeof ways / sizeof *ways };
 
-static void size(uint16_t w, uint16_t h)
-{
-    const ew_target target = { .colour = colour, .depth = NULL, .width = w, .height = h, .stride = w };
-    width = w, height = h;
-    assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
-}
-
 /* A way, a scissor now and then, sides; a colour that no pixel has. */
 static void choose(uint16_t texels[4], ew_rect *scissor, int *sides)
 {
@@ -151,19 +144,23 @@ static long one(triangle_kind kind, long number)
 
 /* Counting hits is slower: a tenth of the triangles. */
 enum { SHARE = EW_TRACE ? 10 : 1 };
+/* a depth of 4 and more */
+enum { LEAST_W = 1 << 17 };
 
-static void run(const char *name, triangle_kind first, triangle_kind last, long slice, long whole)
+/* All kinds by turns, in pictures of w x h pixels. */
+static void run(const char *name, uint16_t w, uint16_t h, uint32_t least_w, long slice, long whole)
 {
     long judged[KIND_COUNT] = { 0 }, count[KIND_COUNT] = { 0 };
+    width = w, height = h, deepest = least_w;
     doubles = 0;
     tag = 0;
     memset(colour_memory, 0, sizeof colour_memory);
     for (cases c = cases_of(name, slice / SHARE, whole / SHARE); cases_next(&c);) {
-        triangle_kind kind = first + (triangle_kind)(c.number % (last - first + 1));
+        triangle_kind kind = (triangle_kind)(c.number % KIND_COUNT);
         count[kind]++;
         judged[kind] += one(kind, c.number);
     }
-    for (int kind = first; kind <= (int)last; kind++) {
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
         cases_figure(name, triangle_kind_name[kind], count[kind], judged[kind], 0, NAN, "");
     }
     for (int i = 0; i < GUARD; i++) assert_true(colour_memory[i] == 0 && colour[(int)width * height + i] == 0);
@@ -172,42 +169,32 @@ static void run(const char *name, triangle_kind first, triangle_kind last, long 
 static void small_pictures(void **state)
 {
     (void)state;
-    size(32, 32);
-    deepest = UINT32_C(1) << 17;
-    run(EW_TRACE ? "coverage, hits counted" : "coverage", KIND_ORDINARY, KIND_COUNT - 1, 400000, 9650000);
+    run(EW_TRACE ? "coverage, hits counted" : "coverage", 32, 32, LEAST_W, 400000, 9650000);
 }
 
 static void odd_size(void **state)
 {
     (void)state;
-    size(61, 23);
-    deepest = UINT32_C(1) << 17;
-    run("coverage 61 x 23", KIND_ORDINARY, KIND_COUNT - 1, 10000, 250000);
+    run("coverage 61 x 23", 61, 23, LEAST_W, 10000, 250000);
 }
 
 /* Depth ends at 1: a pixel behind that is drawn all the same. */
 static void beyond_the_horizon(void **state)
 {
     (void)state;
-    size(32, 32);
-    deepest = 1;
-    run("coverage, 1/z down to 2^-31", KIND_ORDINARY, KIND_COUNT - 1, 200000, 1000000);
+    run("coverage, 1/z down to 2^-31", 32, 32, 1, 200000, 1000000);
 }
 
 static void wide_pictures(void **state)
 {
     (void)state;
-    size(4096, 3);
-    deepest = UINT32_C(1) << 17;
-    run("coverage 4096 x 3", KIND_ORDINARY, KIND_COUNT - 1, 2000, 50000);
+    run("coverage 4096 x 3", 4096, 3, LEAST_W, 2000, 50000);
 }
 
 static void tall_pictures(void **state)
 {
     (void)state;
-    size(3, 4096);
-    deepest = UINT32_C(1) << 17;
-    run("coverage 3 x 4096", KIND_ORDINARY, KIND_COUNT - 1, 2000, 50000);
+    run("coverage 3 x 4096", 3, 4096, LEAST_W, 2000, 50000);
 }
 
 int main(void)

@@ -19,15 +19,19 @@ LEVELS = ("-Os", "-O2")
 
 # What a firmware may link: the headers whose functions it calls, the layers it builds, -D options.
 PARTS = ["SHADING", "FOG", "BLENDS", "CUTOUTS", "BILINEAR", "MIPS", "WRAPS", "TEXTURE_FORMATS", "TARGET_FORMATS", "DITHER"]
-NO_FILLS = [f"-DEW_WITH_{part}=0" for part in PARTS]
+LOOPS = ["FLAT", "GOURAUD", "NO_DEPTH", "KEYED", "LIT", "BILINEAR", "GREY4"]
+NO_LOOPS = [f"-DEW_WITH_LOOP_{loop}=0" for loop in LOOPS]
+NO_FILLS = [f"-DEW_WITH_{part}=0" for part in PARTS] + NO_LOOPS
 RASTER, GEOMETRY = ("fixed", "src/raster"), ("fixed", "src/raster", "src/geometry")
 CONFIGURATIONS = {
     "textured, depth": (("raster",), RASTER, NO_FILLS),
     "the same with transform": (("raster", "geometry"), GEOMETRY, NO_FILLS),
+    "raster, all fills, loops left out": (("raster",), RASTER, NO_LOOPS),
     "raster, all fills": (("raster",), RASTER, []),
     "the same with transform and light": (("raster", "geometry", "light"), GEOMETRY, []),
     "textured, depth, in bands and lines": (("raster", "geometry", "picture"), GEOMETRY, NO_FILLS),
-    "everything, with scenes": (("fixed", "raster", "geometry", "picture", "light", "scene", "error"), GEOMETRY + ("src/scene",), []),
+    "everything, with scenes": (("fixed", "raster", "draw2d", "geometry", "picture", "light", "scene", "error"),
+                                GEOMETRY + ("src/scene",), []),
     "display, device side": (("display",), ("fixed", "src/display"), []),
 }
 

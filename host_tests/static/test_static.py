@@ -1,6 +1,7 @@
 """What can be known of the core without running it: stacks, calls, outside names. Built for
 each target whose compiler is there."""
 import os
+import re
 import sys
 import unittest
 
@@ -11,7 +12,7 @@ BUILD = os.path.join(cross.ROOT, os.path.dirname(os.environ.get("EW_BIN", "build
 STACK_LIMIT = 512  # bytes, below: any public call
 
 
-HEADERS = ("fixed", "error", "raster", "geometry", "light", "scene", "display")
+HEADERS = ("fixed", "error", "raster", "draw2d", "geometry", "light", "scene", "display", "panel")
 LAYERS = ("fixed", "src/raster", "src/geometry", "src/scene", "src/display")
 
 
@@ -37,6 +38,51 @@ class Static(unittest.TestCase):
             self.assertEqual({name: bytes for name, bytes in deep.items() if bytes >= STACK_LIMIT}, {})
 
         self.each_build(check)
+
+
+class Hot(unittest.TestCase):
+    """EW_HOT and EW_HOT_TABLE: what rows and pixels need lies where a firmware puts it."""
+
+    DEFINES = ['-DEW_HOT=__attribute__((section(".ew_hot")))', '-DEW_HOT_TABLE=__attribute__((section(".ew_hot_table")))']
+    ROOTS = ("ew_walk_rows", "ew_raster_fill")  # all rows of triangles go through the one, clears through the other
+    TABLES = {"ew_recip_entries", "layouts", "bayer"}
+
+    def sections(self, target, objects):
+        """Name to section of functions and tables: both are `.ew_hot`, or what the compiler makes of no macro."""
+        found = {}
+        for path in objects:
+            for line in cross.run([cross.TARGETS[target][0] + "objdump", "-t", path]).splitlines():
+                words = line.split()
+                if len(words) >= 5 and re.match(r"[0-9a-f]{8} .{5}[F O]", line) and words[-1] not in (".text", ".rodata"):
+                    found[os.path.basename(path), words[-1]] = words[-3]
+        return found
+
+    def test_rows_and_pixels_lie_in_the_section(self):
+        for target in cross.TARGETS:
+            if cross.missing(target):
+                continue
+            with self.subTest(target=target):
+                objects = cross.build(target, "-O2", LAYERS, self.DEFINES, BUILD)
+                graph, found = cross.Stacks(objects), self.sections(target, objects)
+                reached, ahead = set(), list(self.ROOTS)
+                while ahead:
+                    name = ahead.pop()
+                    if name not in reached and name in graph.frame:
+                        reached.add(name)
+                        ahead += graph.calls.get(name, ())
+                    elif name not in reached:
+                        self.assertTrue(cross.HELPERS.fullmatch(name), name)
+                names = {name.split(":")[-1] for name in reached}
+                self.assertGreater(len(names), 20)
+                self.assertIn("fill_textured", names)
+                by_name = {}
+                for (_, name), section in found.items():
+                    by_name.setdefault(name, set()).add(section)
+                self.assertEqual({name: by_name[name] for name in names if by_name[name] != {".ew_hot"}}, {})
+                self.assertEqual({name: by_name[name] for name in self.TABLES if by_name[name] != {".ew_hot_table"}}, {})
+                # and what is done once a triangle, a material or a scene does not
+                for name in ("ew_setup", "ew_raster_init", "ew_scene_open", "ew_texture_check", "ew_draw_text"):
+                    self.assertNotIn(".ew_hot", by_name[name], name)
 
 
 class Reader(unittest.TestCase):

@@ -104,6 +104,16 @@ static void random_corners(ew_vertex16 *v, ew_colour888 *c, int count)
     }
 }
 
+/* Draws a triangle of `count` vertices; the corners of what the clipper made of it are in `traced`. */
+static void draw_triangle(const ew_vertex16 *v, ew_screen_vertex *screen, const ew_colour888 *c, int count, int i0, int i1, int i2)
+{
+    const uint16_t index[3] = { (uint16_t)i0, (uint16_t)i1, (uint16_t)i2 };
+    const ew_mesh mesh = { v, screen, c, index, 3, 8 };
+    ew_transform_vertices(&geometry.transform, v, (uint32_t)count, screen);
+    traced_count = 0;
+    assert_true(ew_draw_triangles(&geometry, &mesh) >= 0);
+}
+
 static void colours_at_cuts(void **state)
 {
     (void)state;
@@ -113,16 +123,12 @@ static void colours_at_cuts(void **state)
         ew_vertex16 v[3];
         ew_colour888 c[3];
         ew_screen_vertex screen[3];
-        const uint16_t index[3] = { 0, 1, 2 };
-        const ew_mesh mesh = { v, screen, c, index, 3, 8 };
         const ew_vertex16 *const corner[3] = { &v[0], &v[1], &v[2] };
         const ew_colour888 *const paint[3] = { &c[0], &c[1], &c[2] };
         around_the_eye(k & 1);
         random_corners(v, c, 3);
         if (k & 1) v[0].z = (int16_t)-(int)(test_random() % 9); /* at the near plane, far beside */
-        ew_transform_vertices(&geometry.transform, v, 3, screen);
-        traced_count = 0;
-        assert_true(ew_draw_triangles(&geometry, &mesh) >= 0);
+        draw_triangle(v, screen, c, 3, 0, 1, 2);
         for (int i = 0; i < traced_count; i++) {
             const ew_raster_vertex *r = &traced[i];
             if (!is_cut(r, screen, 3)) {
@@ -155,15 +161,10 @@ static void without_colours_all_is_white(void **state)
         ew_vertex16 v[3];
         ew_colour888 c[3];
         ew_screen_vertex screen[3];
-        const uint16_t index[3] = { 0, 1, 2 };
-        ew_mesh mesh = { v, screen, c, index, 3, 8 };
         around_the_eye(k & 1);
         random_corners(v, c, 3);
-        ew_transform_vertices(&geometry.transform, v, 3, screen);
-        ew_draw_triangles(&geometry, &mesh);
-        mesh.colours = NULL;
-        traced_count = 0;
-        ew_draw_triangles(&geometry, &mesh);
+        draw_triangle(v, screen, c, 3, 0, 1, 2);
+        draw_triangle(v, screen, NULL, 3, 0, 1, 2);
         for (int i = 0; i < traced_count; i++, corners++) {
             assert_true(traced[i].colour.r == 255 && traced[i].colour.g == 255 && traced[i].colour.b == 255);
         }
@@ -180,19 +181,13 @@ static void shared_edges_are_cut_alike(void **state)
         ew_vertex16 v[4];
         ew_colour888 c[4];
         ew_screen_vertex screen[4];
-        const uint16_t index[6] = { 0, 1, 2, 2, 1, 3 };
         ew_raster_vertex first[MOST];
         around_the_eye(k & 1);
         random_corners(v, c, 4);
-        ew_transform_vertices(&geometry.transform, v, 4, screen);
-        ew_mesh mesh = { v, screen, c, index, 3, 8 };
-        traced_count = 0;
-        ew_draw_triangles(&geometry, &mesh);
+        draw_triangle(v, screen, c, 4, 0, 1, 2);
         int count = traced_count;
         memcpy(first, traced, sizeof first);
-        mesh.indices += 3;
-        traced_count = 0;
-        ew_draw_triangles(&geometry, &mesh);
+        draw_triangle(v, screen, c, 4, 2, 1, 3);
         if (!count || !traced_count) continue;
         const ew_vertex16 *const corner[3] = { &v[0], &v[1], &v[2] };
         for (int i = 0; i < count; i++) {

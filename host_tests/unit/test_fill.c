@@ -10,6 +10,7 @@
 
 #include "edgewalk/raster.h"
 #include "../../src/raster/fill.h"
+#include "../../src/raster/loops.h"
 #include "../../src/raster/texture.h"
 #include "../reference/ref_fill.h"
 
@@ -666,6 +667,126 @@ static void triangles_and_clears(void **state)
     }
 }
 
+/* ---- loops ---- */
+
+/* Which are in the build. */
+#define X(name, has) EW_WITH_LOOP_##name,
+static const uint8_t with[LOOP_COUNT] = { 1, 1, LOOPS(X) };
+#undef X
+
+/* What the loops of loops.c are for, and what is nearly that. */
+static void likely_loop(fill_case *c)
+{
+    static const uint8_t formats[] = { EW_TARGET_RGB565, EW_TARGET_RGB565_SWAPPED, EW_TARGET_GREY4 };
+    static const uint8_t flags[] = { 0, EW_SHADED, EW_COLOUR_KEY, EW_NO_DEPTH_TEST | EW_NO_DEPTH_WRITE };
+    ew_texture *t = &c->texture;
+    ew_material *m = &c->material;
+    if (!chance(8)) c->target.format = formats[below(3)], c->target.stride = (uint16_t)((c->target.stride + 1) & ~1);
+    if (c->target.format != EW_TARGET_GREY4) c->target.dither = (uint8_t)chance(8);
+    do t->width = (uint16_t)(1u << below(12)), t->height = (uint16_t)(1u << below(12));
+    while ((uint32_t)t->width * t->height > TEXELS_MOST / 4);
+    t->levels = t->width > 1 && chance(8) ? 2 : 0, t->format = chance(8) ? t->format : EW_TEXTURE_RGB565;
+    if (!chance(8)) t->wrap_u = t->wrap_v = 0;
+    t->key = ((const uint16_t *)(const void *)texels)[below(16)];
+    m->flags = flags[below(4)];
+    if (chance(8)) m->flags |= (uint8_t)(1u << below(7));
+    m->flags |= EW_DOUBLE_SIDED;
+    m->filter = (uint8_t)(chance(20) ? 2 : below(2));
+    m->blend = (uint8_t)chance(20);
+    m->rung = (uint8_t)(chance(2) ? EW_RUNG_AUTO : below(EW_RUNG_COUNT));
+    m->tolerance = (uint16_t)(chance(4) ? EW_TOLERANCE_MAX : below(chance(2) ? 5 : 64)); /* light may leave its range */
+    fit_to_build(c);
+}
+
+static void likely_corner(ew_raster_vertex *v, int first_row, uint32_t w_bits, uint32_t uv_bits)
+{
+    v->x = (int32_t)below(3 * W * 4096) - W * 4096, v->y = (int32_t)below(3 * H * 4096) + (first_row - H) * 4096;
+    v->w = 1 + (test_random() >> 1 >> below(w_bits));
+    v->u = (int32_t)any_signed(uv_bits), v->v = (int32_t)any_signed(uv_bits);
+    uint8_t *channel[3] = { &v->colour.r, &v->colour.g, &v->colour.b };
+    for (int k = 0; k < 3; k++) *channel[k] = (uint8_t)(chance(2) ? test_random() : chance(2) ? 255 : 0);
+}
+
+/* Every loop against the generic path: colours and depths, bit for bit. */
+static void loops_and_the_generic_path_agree(void **state)
+{
+    (void)state;
+    int drawn_with[LOOP_COUNT] = { 0 };
+    fill_case c;
+    random_memory();
+    for (int n = 0; n < 60000 / SHARE; n++) {
+        ew_raster raster;
+        if (n % 1000 == 0) random_memory();
+        for (int i = 0; n % 2000 == 0 && i < TEXELS_MOST; i++) texels[i] &= 0x11; /* some equal the key */
+        random_case(&c);
+        likely_loop(&c);
+        drawn = before;
+        if (!begin(&raster, &c)) continue;
+        assert_true(raster.loop < LOOP_COUNT && with[raster.loop]);
+        if (raster.loop <= LOOP_TEXTURED) continue;
+        const ew_raster with_loop = raster;
+        ew_raster_vertex v[3];
+        const uint32_t w_bits = chance(4) ? 31 : 1 + below(4), uv_bits = 15 + below(13);
+        for (int k = 0; k < 3; k++) likely_corner(&v[k], c.target.first_row, w_bits, uv_bits);
+        if (chance(4)) v[1].w = v[2].w = v[0].w;
+        if (chance(4)) v[1].colour = v[2].colour = v[0].colour;
+        say(&c);
+        /* below all depths now and then */
+        for (size_t i = 0; chance(2) && i < sizeof drawn.depth / sizeof *drawn.depth; i++) drawn.depth[i] = 0;
+        const pixels at_first = drawn;
+        raster.loop = LOOP_NONE;
+        if (ew_raster_triangle(&raster, &v[0], &v[1], &v[2]) <= 0) continue;
+        expected = drawn;
+        drawn = at_first;
+        raster = with_loop;
+        assert_int_equal(ew_raster_triangle(&raster, &v[0], &v[1], &v[2]), 1);
+        drawn_with[raster.loop]++;
+        if (!same_pixels()) {
+            const ew_rect whole = raster.scissor;
+            print_differences(&c, &whole);
+            fail_msg("loop %d differs from the generic path, corners %d,%d,%u %d,%d %d,%d,%u %d,%d %d,%d,%u %d,%d", with_loop.loop,
+                     v[0].x, v[0].y, v[0].w, v[0].u, v[0].v, v[1].x, v[1].y, v[1].w, v[1].u, v[1].v, v[2].x, v[2].y, v[2].w,
+                     v[2].u, v[2].v);
+        }
+    }
+    for (int k = LOOP_FLAT; k < LOOP_COUNT; k++) {
+        if (getenv("EW_PRINT")) printf("# loop %d: %d triangles\n", k, drawn_with[k]);
+        assert_true((drawn_with[k] > 200 / SHARE) == with[k]);
+    }
+}
+
+/* What goes through which loop: were another one chosen, the pixels would be the same. */
+static void loops_are_chosen(void **state)
+{
+    (void)state;
+    enum { NO_DEPTH = EW_NO_DEPTH_TEST | EW_NO_DEPTH_WRITE, WITHOUT = 1, SWAPPED = EW_TARGET_RGB565_SWAPPED };
+    static const struct {
+        uint8_t untextured, flags, filter, format, dither, no_buffer, loop;
+    } cases[] = {
+        { .loop = LOOP_TEXTURED }, { .flags = EW_DOUBLE_SIDED, .dither = 1, .loop = LOOP_TEXTURED },
+        { WITHOUT, .loop = LOOP_FLAT }, { WITHOUT, EW_COLOUR_KEY | EW_ALPHA_MASK, .format = SWAPPED, .loop = LOOP_FLAT },
+        { WITHOUT, EW_SHADED, .loop = LOOP_GOURAUD }, { WITHOUT, EW_SHADED, .dither = 1, .loop = LOOP_NONE },
+        { .flags = NO_DEPTH, .loop = LOOP_NO_DEPTH }, { .no_buffer = 1, .loop = LOOP_NO_DEPTH },
+        { .flags = EW_NO_DEPTH_TEST, .loop = LOOP_NONE }, { .flags = EW_NO_DEPTH_WRITE, .loop = LOOP_NONE },
+        { .flags = EW_COLOUR_KEY, .loop = LOOP_KEYED }, { .format = SWAPPED, .loop = LOOP_KEYED },
+        { .flags = EW_SHADED, .loop = LOOP_LIT }, { .flags = EW_SHADED | EW_FOG, .loop = LOOP_NONE },
+        { .filter = EW_FILTER_BILINEAR, .loop = LOOP_BILINEAR }, { .filter = EW_FILTER_BILINEAR, .dither = 1, .loop = LOOP_NONE },
+        { .format = EW_TARGET_GREY4, .dither = 1, .loop = LOOP_GREY4 }, { .format = EW_TARGET_GREY8, .loop = LOOP_NONE },
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const ew_texture texture = { .texels = texels, .width = 16, .height = 8, .mask = mask };
+        const ew_material m = { .texture = cases[i].untextured ? NULL : &texture, .flags = cases[i].flags, .filter = cases[i].filter };
+        const ew_target target = { .colour = drawn.colour, .depth = cases[i].no_buffer ? NULL : drawn.depth, .width = 8, .height = 4,
+                                   .stride = 8, .format = cases[i].format, .dither = cases[i].dither };
+        ew_raster raster;
+        test_context("case %zu", i);
+        if (target_needs_more(&target) || material_needs_more(&m)) continue;
+        assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
+        assert_int_equal(ew_raster_set_material(&raster, &m), EW_OK);
+        assert_int_equal(raster.loop, with[cases[i].loop] ? cases[i].loop : LOOP_NONE);
+    }
+}
+
 static int material_result(ew_raster *raster, const ew_material *m) { return ew_raster_set_material(raster, m); }
 
 static void arguments_are_checked(void **state)
@@ -766,6 +887,8 @@ int main(void)
         TEST(fog_is_linear),
 #endif
         TEST(triangles_and_clears),
+        TEST(loops_are_chosen),
+        TEST(loops_and_the_generic_path_agree),
         TEST(arguments_are_checked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "edgewalk/scene.h"
 
@@ -103,12 +104,13 @@ static void write_scene(writer *w)
     add(w, 0, 4), add(w, 2, 1), add(w, 1, 1), add(w, 0, 2);
     section(w, "TEXL", 8, 2);
     for (uint32_t i = 0; i < 8; i++) add(w, 0x1111 * (i + 1), 2);
-    section(w, "TRAK", 1, 12);
+    section(w, "TRAK", 2, 12);
     add(w, 0, 4), add(w, 3, 2), add(w, 100, 2), add(w, 2, 2), add(w, 1, 2);
-    section(w, "KEYS", 3, 32);
-    for (int32_t k = 0; k < 3; k++) {
+    add(w, 3, 4), add(w, 1, 2), add(w, 100, 2), add(w, 2, 2), add(w, 1, 2);
+    section(w, "KEYS", 4, 32);
+    for (int32_t k = 0; k < 4; k++) {
         add(w, (uint32_t)(k * one / 4), 4), add(w, 0, 4), add(w, (uint32_t)(k * one / 8), 4);
-        const int16_t q[3][4] = { { 0, 0, 0, 16384 }, { 0, 0, 8192, 14189 }, { 0, 0, 14189, 8192 } };
+        const int16_t q[4][4] = { { 0, 0, 0, 16384 }, { 0, 0, 8192, 14189 }, { 0, 0, 14189, 8192 }, { 0, 0, 0, 16384 } };
         for (int i = 0; i < 4; i++) add(w, (uint16_t)q[k][i], 2);
         for (int i = 0; i < 3; i++) add(w, (uint32_t)one, 4);
     }
@@ -254,7 +256,7 @@ static void every_rule_is_checked(void **state)
         { "NODE", 0, 0, 2, "parent below its node" },
         { "NODE", 68, 1, 2, "parent below its node, second" },
         { "NODE", 68, (uint32_t)-2, 2, "parent at least -1" },
-        { "NODE", 70, 1, 2, "track number" },
+        { "NODE", 70, 2, 2, "track number" },
         { "NODE", 70, (uint32_t)-2, 2, "track at least -1" },
         { "NODE", 4, 2, 2, "primitives inside" },
         { "NODE", 6, 3, 2, "number of primitives" },
@@ -262,7 +264,9 @@ static void every_rule_is_checked(void **state)
         { "PRIM", 4, 0, 2, "a vertex at least" },
         { "PRIM", 4, 7, 2, "number of vertices" },
         { "PRIM", 6, 2, 2, "material number" },
-        { "PRIM", 8, 4, 4, "indices inside" },
+        { "PRIM", 40 + 8, 4, 4, "indices inside" },
+        { "PRIM", 8, 7, 4, "indices inside, first" },
+        { "PRIM", 40 + 8, 2, 4, "indices of one primitive only" },
         { "PRIM", 12, 2, 4, "indices in threes" },
         { "PRIM", 12, 9, 4, "number of indices" },
         { "PRIM", 12, 0xFFFFFFFFu, 4, "number of indices, huge" },
@@ -279,7 +283,8 @@ static void every_rule_is_checked(void **state)
         { "TEXR", 5, 2, 1, "texels inside, by height" },
         { "TEXR", 6, 1, 1, "texture format" },
         { "TRAK", 4, 0, 2, "a key at least" },
-        { "TRAK", 4, 4, 2, "keys inside" },
+        { "TRAK", 12 + 4, 2, 2, "keys inside" },
+        { "TRAK", 12, 2, 4, "keys of one track only" },
         { "TRAK", 6, 0, 2, "interval" },
         { "TRAK", 8, 1001, 2, "track exponent" },
         { "KEYS", 0, (1u << 30) + 1, 4, "translation mantissa" },
@@ -317,6 +322,53 @@ static void every_rule_is_checked(void **state)
     write_scene(&w);
     memcpy(w.bytes + 48, "CAMR", 4), put(&w, 60, 72, 4), seal(&w);
     assert_int_equal(open_and_forget(&w, w.size), EW_ERR_CORRUPT); /* a tag twice */
+}
+
+/* The processor's seconds to refuse a scene in which n records of `tag` all name the same
+ * 3 n indices or n keys: the checks must not go through them n times. */
+static double seconds_to_refuse(const char *tag, uint32_t n)
+{
+    const int tracks = strcmp(tag, "TRAK") == 0;
+    const uint32_t each = tracks ? 12 : 40, items = tracks ? n : 3 * n, item = tracks ? 32 : 2;
+    writer small;
+    write_scene(&small);
+    const uint32_t first = small.size, second = first + each * n, size = (second + item * items + 3) / 4 * 4;
+    uint8_t *bytes = calloc(size, 1);
+    assert_non_null(bytes);
+    const uint32_t record = offset_of(&small, tag), named = offset_of(&small, tracks ? "KEYS" : "INDX");
+    put(&small, 8, size, 4);
+    put(&small, record + (tracks ? 0 : 8), 0, 4), put(&small, record + (tracks ? 4 : 12), items, tracks ? 2 : 4);
+    for (uint32_t at = 32; at < small.entry; at += 16) {
+        if (memcmp(small.bytes + at, tag, 4) == 0) put(&small, at + 4, first, 4), put(&small, at + 8, n, 4);
+        if (memcmp(small.bytes + at, tracks ? "KEYS" : "INDX", 4) == 0) {
+            put(&small, at + 4, second, 4), put(&small, at + 8, items, 4);
+        }
+    }
+    memcpy(bytes, small.bytes, small.size);
+    for (uint32_t i = 0; i < n; i++) memcpy(bytes + first + each * i, small.bytes + record, each);
+    for (uint32_t i = 0; i < items; i++) memcpy(bytes + second + item * i, small.bytes + named, item);
+    uint32_t crc = crc32_of(bytes, size);
+    for (int i = 0; i < 4; i++) bytes[12 + i] = (uint8_t)(crc >> 8 * i);
+    double best = 1e9;
+    for (int again = 0; again < 5; again++) {
+        ew_scene scene;
+        clock_t start = clock();
+        assert_int_equal(ew_scene_open(&scene, bytes, size), EW_ERR_CORRUPT);
+        best = fmin(best, (double)(clock() - start) / CLOCKS_PER_SEC);
+    }
+    free(bytes);
+    return best;
+}
+
+static void shared_ranges_take_no_square_of_time(void **state)
+{
+    (void)state;
+    const char *const tags[] = { "PRIM", "TRAK" };
+    for (int i = 0; i < 2; i++) {
+        double few = seconds_to_refuse(tags[i], 4000), many = seconds_to_refuse(tags[i], 16000);
+        test_context("%s: %.6f s, four times the size %.6f s", tags[i], few, many);
+        assert_true(many < 8 * few);
+    }
 }
 
 static uint16_t colour[W * H], depth[W * H];
@@ -429,6 +481,7 @@ int main(void)
         TEST(every_length_is_refused),
         TEST(codes_say_what_is_wrong),
         TEST(every_rule_is_checked),
+        TEST(shared_ranges_take_no_square_of_time),
         TEST(damaged_scenes_do_no_harm),
         TEST(tracks_interpolate_and_clamp),
         TEST(draws_near_over_far),

@@ -190,14 +190,35 @@ typedef struct setting {
     bad_link bad;
     ew_link link;
     ew_panel_lines lines;
+    ew_sender sender;
 } setting;
 
-static void open_setting(setting *s, ew_hid_profile profile)
+static void init_setting(setting *s, ew_hid_profile profile, const ew_link_config *config)
 {
     bad_link_init(&s->bad, profile);
     memset(&s->lines, 0, sizeof s->lines);
-    ew_link_init(&s->link, &s->bad.driver, &quick);
+    ew_link_init(&s->link, &s->bad.driver, config);
+}
+
+static void open_setting(setting *s, ew_hid_profile profile)
+{
+    init_setting(s, profile, &quick);
     assert_int_equal(ew_link_open(&s->link), 0);
+}
+
+static void open_faulty(setting *s, ew_hid_profile profile, fault kind, unsigned long at)
+{
+    open_setting(s, profile);
+    s->bad.fault = kind;
+    s->bad.at = at;
+}
+
+static void deliver(setting *s, unsigned n)
+{
+    uint16_t pixels[PIXELS];
+    draw(pixels, n);
+    assert_int_equal(ew_link_deliver(&s->link, pixels), EW_LINK_OK);
+    assert_shown(&s->bad, pixels);
 }
 
 static void close_setting(setting *s)
@@ -222,25 +243,21 @@ static void test_link_reads_size(void **state)
 
 static void test_link_refuses_other_displays(void **state)
 {
-    bad_link bad;
-    ew_link link;
+    setting s;
     (void)state;
-    bad_link_init(&bad, EW_HID_BUFFERED);
-    bad.without_features = 1;
-    ew_link_init(&link, &bad.driver, &quick);
-    assert_int_equal(ew_link_open(&link), EW_DRIVER_FAILED);
-    assert_non_null(strstr(link.error, "not a display that takes streamed frames"));
-    bad.absent = 1;
-    assert_int_equal(ew_link_open(&link), EW_DRIVER_ABSENT);
-    assert_string_equal(link.error, "open: no such display");
-    ew_link_free(&link);
-    ew_sim_free(&bad.sim);
+    init_setting(&s, EW_HID_BUFFERED, &quick);
+    s.bad.without_features = 1;
+    assert_int_equal(ew_link_open(&s.link), EW_DRIVER_FAILED);
+    assert_non_null(strstr(s.link.error, "not a display that takes streamed frames"));
+    s.bad.absent = 1;
+    assert_int_equal(ew_link_open(&s.link), EW_DRIVER_ABSENT);
+    assert_string_equal(s.link.error, "open: no such display");
+    close_setting(&s);
 }
 
 /* Every fault at every report of five frames: with `deliver` each picture is right. */
 static void test_link_recovers_from_every_fault(void **state)
 {
-    uint16_t pixels[PIXELS];
     unsigned long at, last;
     int profile, f;
     unsigned n;
@@ -251,13 +268,9 @@ static void test_link_recovers_from_every_fault(void **state)
             for (at = 1, last = 1; at <= last; at++) {
                 setting s;
                 test_context("profile %d, fault %d at report %lu", profile, f, at);
-                open_setting(&s, (ew_hid_profile)profile);
-                s.bad.fault = (fault)f;
-                s.bad.at = at;
+                open_faulty(&s, (ew_hid_profile)profile, (fault)f, at);
                 for (n = 0; n < 5; n++) {
-                    draw(pixels, n);
-                    assert_int_equal(ew_link_deliver(&s.link, pixels), EW_LINK_OK);
-                    assert_shown(&s.bad, pixels);
+                    deliver(&s, n);
                 }
                 assert_int_equal(s.link.totals.accepted, 5);
                 last = f == LOSE_STATUS ? s.bad.statuses : s.bad.writes;
@@ -276,9 +289,7 @@ static void test_link_next_frame_is_key(void **state)
     unsigned n;
     (void)state;
 
-    open_setting(&s, EW_HID_BUFFERED);
-    s.bad.fault = LOSE;
-    s.bad.at = 9;
+    open_faulty(&s, EW_HID_BUFFERED, LOSE, 9);
     for (n = 0; n < 8; n++) {
         draw(pixels, n);
         assert_int_not_equal(ew_link_send(&s.link, pixels), EW_LINK_LOST);
@@ -292,15 +303,11 @@ static void test_link_next_frame_is_key(void **state)
 
 static void test_link_lost_status_counts_as_timeout(void **state)
 {
-    uint16_t pixels[PIXELS];
     setting s;
     (void)state;
 
-    open_setting(&s, EW_HID_BUFFERED);
-    s.bad.fault = LOSE_STATUS;
-    s.bad.at = 1;
-    draw(pixels, 0);
-    assert_int_equal(ew_link_deliver(&s.link, pixels), EW_LINK_OK);
+    open_faulty(&s, EW_HID_BUFFERED, LOSE_STATUS, 1);
+    deliver(&s, 0);
     assert_int_equal(s.link.totals.timeouts, 1);
     assert_int_equal(s.link.totals.sent, 2);
     assert_int_equal(s.link.totals.keys, 2);
@@ -309,20 +316,17 @@ static void test_link_lost_status_counts_as_timeout(void **state)
 
 static void test_link_unchanged_frame_is_one_report(void **state)
 {
-    uint16_t pixels[PIXELS];
     ew_link_config raw = quick;
     setting s;
     unsigned long before;
     (void)state;
 
-    bad_link_init(&s.bad, EW_HID_BUFFERED);
     raw.codec = EW_CODEC_RAW;
-    ew_link_init(&s.link, &s.bad.driver, &raw);
+    init_setting(&s, EW_HID_BUFFERED, &raw);
     assert_int_equal(ew_link_open(&s.link), 0);
-    draw(pixels, 0);
-    assert_int_equal(ew_link_deliver(&s.link, pixels), EW_LINK_OK);
+    deliver(&s, 0);
     before = s.bad.writes;
-    assert_int_equal(ew_link_deliver(&s.link, pixels), EW_LINK_OK);
+    deliver(&s, 0);
     assert_int_equal(s.bad.writes, before + 1);
     assert_int_equal(s.link.totals.accepted, 2);
     assert_int_equal(ew_link_keep_alive(&s.link), EW_LINK_OK);
@@ -335,7 +339,6 @@ static void test_link_unchanged_frame_is_one_report(void **state)
 
 static void test_link_counters_tell_of_refusals(void **state)
 {
-    uint16_t pixels[PIXELS];
     setting s;
     unsigned n;
     (void)state;
@@ -343,35 +346,29 @@ static void test_link_counters_tell_of_refusals(void **state)
     open_setting(&s, EW_HID_BUFFERED);
     assert_false(ew_link_counters_agree(&s.link)); /* it has not spoken yet */
     for (n = 0; n < 300; n++) {                    /* past the counters' wrap */
-        draw(pixels, n);
-        assert_int_equal(ew_link_deliver(&s.link, pixels), EW_LINK_OK);
+        deliver(&s, n);
     }
     assert_true(ew_link_counters_agree(&s.link));
     s.bad.fault = FLIP_BIT;
     s.bad.at = s.bad.writes + 2;
-    draw(pixels, 1);
-    assert_int_equal(ew_link_deliver(&s.link, pixels), EW_LINK_OK);
+    deliver(&s, 1);
     assert_false(ew_link_counters_agree(&s.link));
     close_setting(&s);
 }
 
 static void test_link_open_loop_key_frames(void **state)
 {
-    uint16_t pixels[PIXELS];
     ew_link_config config = quick;
     setting s;
     unsigned n;
     (void)state;
 
-    bad_link_init(&s.bad, EW_HID_BUFFERED);
-    s.bad.open_loop = s.bad.mute = 1;
     config.keyframe_ms = 40;
-    ew_link_init(&s.link, &s.bad.driver, &config);
+    init_setting(&s, EW_HID_BUFFERED, &config);
+    s.bad.open_loop = s.bad.mute = 1;
     assert_int_equal(ew_link_open(&s.link), 0);
     for (n = 0; n < 10; n++) {
-        draw(pixels, n);
-        assert_int_equal(ew_link_deliver(&s.link, pixels), EW_LINK_OK);
-        assert_shown(&s.bad, pixels);
+        deliver(&s, n);
         ew_sleep_ms(25);
     }
     assert_int_equal(s.link.totals.timeouts, 0);
@@ -399,20 +396,17 @@ static void test_link_never_answering_ends(void **state)
 
 static void test_link_records_whole_reports(void **state)
 {
-    uint16_t pixels[PIXELS];
     ew_link_config config = quick;
     char line[512];
     setting s;
     unsigned long lines = 0;
     (void)state;
 
-    bad_link_init(&s.bad, EW_HID_BUFFERED);
     config.record = tmpfile();
     assert_non_null(config.record);
-    ew_link_init(&s.link, &s.bad.driver, &config);
+    init_setting(&s, EW_HID_BUFFERED, &config);
     assert_int_equal(ew_link_open(&s.link), 0);
-    draw(pixels, 0);
-    assert_int_equal(ew_link_deliver(&s.link, pixels), EW_LINK_OK);
+    deliver(&s, 0);
     rewind(config.record);
     while (fgets(line, sizeof line, config.record)) {
         assert_int_equal(strlen(line), 3 * (1 + EW_HID_OUT_BYTES));
@@ -426,20 +420,21 @@ static void test_link_records_whole_reports(void **state)
 
 /* ---- the sender ---- */
 
+/* Submits so many frames; `expected` is 0, with the last of them shown, or -1. */
 static void run_sender(setting *s, const ew_sender_config *config, unsigned frames, unsigned pause_ms,
-                       ew_sender *sender, int expected)
+                       int expected)
 {
     uint16_t pixels[PIXELS];
     unsigned n;
     int r = 0;
 
-    assert_int_equal(ew_sender_start(sender, &s->link, &s->lines, config), 0);
+    assert_int_equal(ew_sender_start(&s->sender, &s->link, &s->lines, config), 0);
     for (n = 0; n < frames && !r; n++) {
         draw(pixels, n);
-        r = ew_sender_submit(sender, pixels);
+        r = ew_sender_submit(&s->sender, pixels);
         ew_sleep_ms(pause_ms);
     }
-    r |= ew_sender_end(sender);
+    r |= ew_sender_end(&s->sender);
     assert_int_equal(r ? -1 : 0, expected);
     if (!expected) {
         assert_shown(&s->bad, pixels);
@@ -449,13 +444,12 @@ static void run_sender(setting *s, const ew_sender_config *config, unsigned fram
 static void test_sender_lossless(void **state)
 {
     ew_sender_config config = {.lossless = 1};
-    ew_sender sender;
     setting s;
     (void)state;
 
     open_setting(&s, EW_HID_BUFFERED);
-    run_sender(&s, &config, 50, 0, &sender, 0);
-    assert_int_equal(sender.dropped, 0);
+    run_sender(&s, &config, 50, 0, 0);
+    assert_int_equal(s.sender.dropped, 0);
     assert_int_equal(s.link.totals.accepted, 50);
     close_setting(&s);
 }
@@ -463,15 +457,14 @@ static void test_sender_lossless(void **state)
 static void test_sender_newest_wins(void **state)
 {
     ew_sender_config config = {0};
-    ew_sender sender;
     setting s;
     (void)state;
 
     open_setting(&s, EW_HID_BUFFERED);
     s.bad.write_ms = 2;
-    run_sender(&s, &config, 40, 1, &sender, 0);
-    assert_true(sender.dropped > 0);
-    assert_int_equal(s.link.totals.accepted + sender.dropped, 40);
+    run_sender(&s, &config, 40, 1, 0);
+    assert_true(s.sender.dropped > 0);
+    assert_int_equal(s.link.totals.accepted + s.sender.dropped, 40);
     close_setting(&s);
 }
 
@@ -480,20 +473,17 @@ static void test_sender_repeats_the_last_frame(void **state)
 {
     ew_sender_config config = {.lossless = 1};
     unsigned long whole, lost;
-    ew_sender sender;
     setting s;
     (void)state;
 
     open_setting(&s, EW_HID_DIRECT);
-    run_sender(&s, &config, 6, 0, &sender, 0);
+    run_sender(&s, &config, 6, 0, 0);
     whole = s.bad.writes;
     close_setting(&s);
     for (lost = 1; lost <= whole; lost++) {
         test_context("report %lu lost", lost);
-        open_setting(&s, EW_HID_DIRECT);
-        s.bad.fault = LOSE;
-        s.bad.at = lost;
-        run_sender(&s, &config, 6, 0, &sender, 0);
+        open_faulty(&s, EW_HID_DIRECT, LOSE, lost);
+        run_sender(&s, &config, 6, 0, 0);
         close_setting(&s);
     }
 }
@@ -512,34 +502,28 @@ static void test_sender_confirms_every_frame(void **state)
     unsigned count = 0;
     ew_sender_config config = {
         .lossless = 1, .confirm = 1, .confirmed = count_confirmed, .user = &count, .reconnect_ms = 3000};
-    ew_sender sender;
     setting s;
     (void)state;
 
-    open_setting(&s, EW_HID_BUFFERED);
-    s.bad.fault = GO_AWAY; /* in the midst of a frame, which has to be sent again */
-    s.bad.at = 30;
+    open_faulty(&s, EW_HID_BUFFERED, GO_AWAY, 30); /* in the midst of a frame, which has to be sent again */
     s.bad.absent = 0;
-    run_sender(&s, &config, 20, 0, &sender, 0);
+    run_sender(&s, &config, 20, 0, 0);
     assert_int_equal(count, 20);
-    assert_int_equal(sender.reconnects, 1);
-    assert_int_equal(sender.dropped, 0);
+    assert_int_equal(s.sender.reconnects, 1);
+    assert_int_equal(s.sender.dropped, 0);
     close_setting(&s);
 }
 
 static void test_sender_unplugged(void **state)
 {
     ew_sender_config config = {.lossless = 1};
-    ew_sender sender;
     setting s;
     (void)state;
 
-    open_setting(&s, EW_HID_BUFFERED);
-    s.bad.fault = GO_AWAY;
-    s.bad.at = 30;
-    run_sender(&s, &config, 20, 0, &sender, -1);
-    assert_string_equal(sender.error, "write: the display was unplugged");
-    assert_false(sender.abandoned);
+    open_faulty(&s, EW_HID_BUFFERED, GO_AWAY, 30);
+    run_sender(&s, &config, 20, 0, -1);
+    assert_string_equal(s.sender.error, "write: the display was unplugged");
+    assert_false(s.sender.abandoned);
     close_setting(&s);
 }
 
@@ -550,15 +534,12 @@ static void test_sender_reconnects(void **state)
 
     for (at = 1; at <= 40; at += 3) {
         ew_sender_config config = {.lossless = 1, .reconnect_ms = 5000};
-        ew_sender sender;
         setting s;
         test_context("unplugged at report %lu", at);
-        open_setting(&s, EW_HID_DIRECT);
-        s.bad.fault = GO_AWAY;
-        s.bad.at = at;
+        open_faulty(&s, EW_HID_DIRECT, GO_AWAY, at);
         s.bad.absent = 1;
-        run_sender(&s, &config, 12, 0, &sender, 0);
-        assert_int_equal(sender.reconnects, 1);
+        run_sender(&s, &config, 12, 0, 0);
+        assert_int_equal(s.sender.reconnects, 1);
         close_setting(&s);
     }
 }
@@ -567,45 +548,39 @@ static void test_sender_does_not_wait_for_ever(void **state)
 {
     ew_sender_config config = {.lossless = 1, .reconnect_ms = 300};
     int64_t start = ew_now_ms();
-    ew_sender sender;
     setting s;
     (void)state;
 
-    open_setting(&s, EW_HID_BUFFERED);
-    s.bad.fault = GO_AWAY;
-    s.bad.at = 10;
+    open_faulty(&s, EW_HID_BUFFERED, GO_AWAY, 10);
     s.bad.absent = 1000000;
-    run_sender(&s, &config, 20, 0, &sender, -1);
+    run_sender(&s, &config, 20, 0, -1);
     assert_in_range(ew_now_ms() - start, 300, 300 + SLACK_MS);
-    assert_non_null(strstr(sender.error, "unplugged; looked for it again for 300 ms: open: no such display"));
+    assert_non_null(
+        strstr(s.sender.error, "unplugged; looked for it again for 300 ms: open: no such display"));
     close_setting(&s);
 }
 
 static void test_sender_other_size_after_reconnect(void **state)
 {
     ew_sender_config config = {.lossless = 1, .reconnect_ms = 300};
-    ew_sender sender;
     setting s;
     (void)state;
 
-    open_setting(&s, EW_HID_BUFFERED);
-    s.bad.fault = GO_AWAY;
-    s.bad.at = 10;
+    open_faulty(&s, EW_HID_BUFFERED, GO_AWAY, 10);
     s.bad.later_width = WIDTH + 1;
-    run_sender(&s, &config, 20, 0, &sender, -1);
-    assert_non_null(strstr(sender.error, "came back with another size"));
+    run_sender(&s, &config, 20, 0, -1);
+    assert_non_null(strstr(s.sender.error, "came back with another size"));
     close_setting(&s);
 }
 
 static void test_sender_keeps_alive(void **state)
 {
     ew_sender_config config = {.lossless = 1};
-    ew_sender sender;
     setting s;
     (void)state;
 
     open_setting(&s, EW_HID_BUFFERED);
-    run_sender(&s, &config, 1, 2300, &sender, 0);
+    run_sender(&s, &config, 1, 2300, 0);
     assert_in_range(s.link.totals.keep_alives, 1, 3);
     assert_int_equal(s.link.totals.accepted, 1);
     close_setting(&s);
@@ -618,7 +593,6 @@ static void test_sender_blocked_write_ends(void **state)
     ew_sender_config config = {.lossless = 1, .watch_ms = 200};
     int64_t start;
     uint16_t pixels[PIXELS];
-    ew_sender sender;
     setting s;
     int r = 0, n;
     (void)state;
@@ -626,21 +600,21 @@ static void test_sender_blocked_write_ends(void **state)
     open_setting(&s, EW_HID_BUFFERED);
     s.bad.blocked = &blocked;
     pthread_mutex_lock(&blocked);
-    assert_int_equal(ew_sender_start(&sender, &s.link, &s.lines, &config), 0);
+    assert_int_equal(ew_sender_start(&s.sender, &s.link, &s.lines, &config), 0);
     start = ew_now_ms();
     draw(pixels, 0);
     for (n = 0; n < 10 && !r; n++) {
-        r = ew_sender_submit(&sender, pixels);
+        r = ew_sender_submit(&s.sender, pixels);
     }
     assert_int_equal(r, -1);
-    assert_int_equal(ew_sender_end(&sender), -1);
+    assert_int_equal(ew_sender_end(&s.sender), -1);
     assert_in_range(ew_now_ms() - start, 200, 200 + SLACK_MS);
-    assert_true(sender.abandoned);
-    assert_string_equal(sender.error, "write: the display has taken nothing for 200 ms");
+    assert_true(s.sender.abandoned);
+    assert_string_equal(s.sender.error, "write: the display has taken nothing for 200 ms");
     pthread_mutex_unlock(&blocked); /* lets the thread end, so that the test leaks nothing */
-    pthread_join(sender.thread, NULL);
-    free(sender.mailbox);
-    free(sender.work);
+    pthread_join(s.sender.thread, NULL);
+    free(s.sender.mailbox);
+    free(s.sender.work);
     close_setting(&s);
 }
 
@@ -650,20 +624,17 @@ static void test_sender_interrupted_while_looking(void **state)
     ew_sender_config config = {.reconnect_ms = 60000, .interrupted = &interrupted};
     int64_t start = ew_now_ms();
     uint16_t pixels[PIXELS];
-    ew_sender sender;
     setting s;
     (void)state;
 
-    open_setting(&s, EW_HID_BUFFERED);
-    s.bad.fault = GO_AWAY;
-    s.bad.at = 1;
+    open_faulty(&s, EW_HID_BUFFERED, GO_AWAY, 1);
     s.bad.absent = 1000000;
-    assert_int_equal(ew_sender_start(&sender, &s.link, &s.lines, &config), 0);
+    assert_int_equal(ew_sender_start(&s.sender, &s.link, &s.lines, &config), 0);
     draw(pixels, 0);
-    assert_int_equal(ew_sender_submit(&sender, pixels), 0);
+    assert_int_equal(ew_sender_submit(&s.sender, pixels), 0);
     ew_sleep_ms(200);
     interrupted = 1;
-    assert_int_equal(ew_sender_end(&sender), -1);
+    assert_int_equal(ew_sender_end(&s.sender), -1);
     assert_true(ew_now_ms() - start < SLACK_MS);
     close_setting(&s);
 }
@@ -796,12 +767,11 @@ static void test_te_failure(void **state)
 static void test_te_paces_the_sender(void **state)
 {
     ew_sender_config config = {.lossless = 1};
-    ew_sender sender;
     setting s;
     (void)state;
     open_setting(&s, EW_HID_BUFFERED);
     open_scripted(&s.lines, ".", "eeeeeee.");
-    run_sender(&s, &config, 10, 0, &sender, 0);
+    run_sender(&s, &config, 10, 0, 0);
     assert_int_equal(script.waited, 10);
     assert_int_equal(s.lines.te_edges, 7);
     assert_int_equal(s.lines.te_misses, 3);
@@ -813,13 +783,12 @@ static void test_te_paces_the_sender(void **state)
 static void test_te_failure_ends_the_sender(void **state)
 {
     ew_sender_config config = {.lossless = 1, .reconnect_ms = 5000};
-    ew_sender sender;
     setting s;
     (void)state;
     open_setting(&s, EW_HID_BUFFERED);
     open_scripted(&s.lines, ".", "ee!");
-    run_sender(&s, &config, 10, 0, &sender, -1);
-    assert_string_equal(sender.error, "TE line: cannot be read any more");
+    run_sender(&s, &config, 10, 0, -1);
+    assert_string_equal(s.sender.error, "TE line: cannot be read any more");
     ew_panel_lines_close(&s.lines);
     close_setting(&s);
 }

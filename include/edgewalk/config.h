@@ -83,11 +83,49 @@
 #ifndef EW_WITH_DITHER
 #define EW_WITH_DITHER 1
 #endif
+/* Loops of their own for what is drawn most (docs/fills.md has what each draws and costs). 1, the
+ * default where the part of the fills is there, has one; 0 leaves its code out, and the same pixels
+ * come out of the generic path for several times the instructions.
+ *
+ *   EW_WITH_LOOP_FLAT      one colour
+ *   EW_WITH_LOOP_GOURAUD   one colour, EW_SHADED
+ *   EW_WITH_LOOP_NO_DEPTH  nearest texels, depth neither tested nor written
+ *   EW_WITH_LOOP_KEYED     nearest texels, EW_COLOUR_KEY; or none, and RGB565 swapped
+ *   EW_WITH_LOOP_LIT       nearest texels, EW_SHADED
+ *   EW_WITH_LOOP_BILINEAR  EW_FILTER_BILINEAR
+ *   EW_WITH_LOOP_GREY4     nearest texels on EW_TARGET_GREY4
+ */
+#ifndef EW_WITH_LOOP_FLAT
+#define EW_WITH_LOOP_FLAT 1
+#endif
+#ifndef EW_WITH_LOOP_GOURAUD
+#define EW_WITH_LOOP_GOURAUD EW_WITH_SHADING
+#endif
+#ifndef EW_WITH_LOOP_NO_DEPTH
+#define EW_WITH_LOOP_NO_DEPTH 1
+#endif
+#ifndef EW_WITH_LOOP_KEYED
+#define EW_WITH_LOOP_KEYED 1
+#endif
+#ifndef EW_WITH_LOOP_LIT
+#define EW_WITH_LOOP_LIT EW_WITH_SHADING
+#endif
+#ifndef EW_WITH_LOOP_BILINEAR
+#define EW_WITH_LOOP_BILINEAR EW_WITH_BILINEAR
+#endif
+#ifndef EW_WITH_LOOP_GREY4
+#define EW_WITH_LOOP_GREY4 EW_WITH_TARGET_FORMATS
+#endif
+
 #if (EW_WITH_SHADING != 0 && EW_WITH_SHADING != 1) || (EW_WITH_FOG != 0 && EW_WITH_FOG != 1) || \
     (EW_WITH_BLENDS != 0 && EW_WITH_BLENDS != 1) || (EW_WITH_CUTOUTS != 0 && EW_WITH_CUTOUTS != 1) || \
     (EW_WITH_BILINEAR != 0 && EW_WITH_BILINEAR != 1) || (EW_WITH_MIPS != 0 && EW_WITH_MIPS != 1) || \
     (EW_WITH_WRAPS != 0 && EW_WITH_WRAPS != 1) || (EW_WITH_TEXTURE_FORMATS != 0 && EW_WITH_TEXTURE_FORMATS != 1) || \
-    (EW_WITH_TARGET_FORMATS != 0 && EW_WITH_TARGET_FORMATS != 1) || (EW_WITH_DITHER != 0 && EW_WITH_DITHER != 1)
+    (EW_WITH_TARGET_FORMATS != 0 && EW_WITH_TARGET_FORMATS != 1) || (EW_WITH_DITHER != 0 && EW_WITH_DITHER != 1) || \
+    (EW_WITH_LOOP_FLAT != 0 && EW_WITH_LOOP_FLAT != 1) || (EW_WITH_LOOP_GOURAUD != 0 && EW_WITH_LOOP_GOURAUD != 1) || \
+    (EW_WITH_LOOP_NO_DEPTH != 0 && EW_WITH_LOOP_NO_DEPTH != 1) || (EW_WITH_LOOP_KEYED != 0 && EW_WITH_LOOP_KEYED != 1) || \
+    (EW_WITH_LOOP_LIT != 0 && EW_WITH_LOOP_LIT != 1) || (EW_WITH_LOOP_BILINEAR != 0 && EW_WITH_LOOP_BILINEAR != 1) || \
+    (EW_WITH_LOOP_GREY4 != 0 && EW_WITH_LOOP_GREY4 != 1)
 #error "EW_WITH_...: 0 or 1"
 #endif
 
@@ -104,6 +142,16 @@
 #define EW_OWN_FRAME __attribute__((noinline))
 #else
 #define EW_OWN_FRAME
+#endif
+
+/* Where the code of rows and pixels goes, and the tables that it reads: nothing, or a section that
+ * the firmware's linker script puts into RAM or an ITCM (docs/porting.md), as in
+ * -D'EW_HOT=__attribute__((section(".ew_hot")))'. Two sections: code and tables may not share one. */
+#ifndef EW_HOT
+#define EW_HOT
+#endif
+#ifndef EW_HOT_TABLE
+#define EW_HOT_TABLE
 #endif
 
 /* Called for every fragment, before the depth test, when a build defines EW_TRACE as

@@ -4,10 +4,12 @@
 
 #include "config.h"
 #include "display.h"
+#include "draw2d.h"
 #include "error.h"
 #include "fixed.h"
 #include "geometry.h"
 #include "light.h"
+#include "panel.h"
 #include "picture.h"
 #include "raster.h"
 #include "scene.h"

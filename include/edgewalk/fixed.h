@@ -41,12 +41,11 @@ static inline int32_t ew_wrap_add32(int32_t a, int32_t b) { return (int32_t)((ui
 static inline int32_t ew_wrap_sub32(int32_t a, int32_t b) { return (int32_t)((uint32_t)a - (uint32_t)b); }
 static inline uint64_t ew_wrap_mul64(uint64_t a, int32_t b) { return a * (uint64_t)(int64_t)b; }
 
-/* 32 x 32 -> 64 bits, exact; on most cores one instruction. */
-static inline int64_t ew_mul_s32(int32_t a, int32_t b) { return (int64_t)a * b; }
-static inline uint64_t ew_mul_u32(uint32_t a, uint32_t b) { return (uint64_t)a * b; }
-/* High words of the same products: floor(a b / 2^32). The second form is made of 16-bit
- * pieces for cores without a long multiply, where a 64-bit product is a library call; both
- * give the same bits. */
+/* 32 x 32 -> 64 bits, exact, and the high word of that: floor(a b / 2^32). Forms in pieces are
+ * made of 16-bit ones, for cores without a long multiply, where compilers call a library for
+ * 64 x 64 bits; all give the same bits. */
+uint64_t ew_mul_u32_pieces(uint32_t a, uint32_t b);
+int64_t ew_mul_s32_pieces(int32_t a, int32_t b);
 static inline uint32_t ew_mulh_u32_pieces(uint32_t a, uint32_t b)
 {
     uint32_t ah = a >> 16, al = a & 0xFFFFu, bh = b >> 16, bl = b & 0xFFFFu;
@@ -64,10 +63,14 @@ static inline int32_t ew_mulh_s32_pieces(int32_t a, int32_t b)
     return ah * bh + EW_ASR(middle, 16) + EW_ASR(other, 16);
 }
 #if !EW_LONG_MULTIPLY
+static inline int64_t ew_mul_s32(int32_t a, int32_t b) { return ew_mul_s32_pieces(a, b); }
+static inline uint64_t ew_mul_u32(uint32_t a, uint32_t b) { return ew_mul_u32_pieces(a, b); }
 static inline int32_t ew_mulh_s32(int32_t a, int32_t b) { return ew_mulh_s32_pieces(a, b); }
 static inline uint32_t ew_mulh_u32(uint32_t a, uint32_t b) { return ew_mulh_u32_pieces(a, b); }
 #define ew_product_less ew_product_less_pieces
 #else
+static inline int64_t ew_mul_s32(int32_t a, int32_t b) { return (int64_t)a * b; }
+static inline uint64_t ew_mul_u32(uint32_t a, uint32_t b) { return (uint64_t)a * b; }
 static inline int32_t ew_mulh_s32(int32_t a, int32_t b) { return (int32_t)EW_ASR((int64_t)a * b, 32); }
 static inline uint32_t ew_mulh_u32(uint32_t a, uint32_t b) { return (uint32_t)(((uint64_t)a * b) >> 32); }
 #define ew_product_less ew_product_less_long
@@ -253,10 +256,9 @@ void ew_mat34_identity(ew_mat34 *out);
  * below 2^-28 of (largest of a's row) (largest of b), each taken over the three or the
  * fourth that meet in it. */
 int ew_mat34_mul(ew_mat34 *out, const ew_mat34 *a, const ew_mat34 *b);
-/* The same for a 4 x 4 matrix times an affine one, and for two 4 x 4 ones. */
+/* The same for a 4 x 4 matrix times an affine one. */
 int ew_mat44_mul_mat34(ew_mat44 *out, const ew_mat44 *a, const ew_mat34 *b);
-int ew_mat44_mul(ew_mat44 *out, const ew_mat44 *a, const ew_mat44 *b);
-/* One row of these: a row times a matrix. `out` may be a, but no row of b; after EW_ERR_RANGE it
+/* A row times a matrix: one row of such a product. `out` may be a, but no row of b; after EW_ERR_RANGE it
  * is of no use. */
 int ew_row_mul_mat34(ew_row *out, const ew_row *a, const ew_mat34 *b);
 int ew_row_mul_mat44(ew_row *out, const ew_row *a, const ew_mat44 *b);

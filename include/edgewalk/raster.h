@@ -169,7 +169,7 @@ typedef struct ew_raster {
     uint8_t fog_shift;
     uint8_t log2_width, log2_height; /* of the texture, rounded up                         */
     uint16_t shortest_run; /* px: below that a pixel each is cheaper (ew_raster_set_cost)  */
-    uint8_t plain; /* 1: depth tested and written, RGB565 to RGB565, nearest, repeated, nothing else */
+    uint8_t loop; /* what draws the material: src/raster/loops.h                         */
     ew_raster_work work; /* the layer's own; no field of it means anything between calls   */
 } ew_raster;
 

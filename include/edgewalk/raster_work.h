@@ -1,7 +1,7 @@
 /* edgewalk/raster_work.h - the raster layer's own; nothing for users.
  *
  * What the layer works with while it draws a triangle. It lies in the caller's context and
- * not on the stack, which stays below 512 bytes; nothing in it outlives a call.
+ * not on the stack, which stays below 512 bytes; nothing in it outlives a call, but for `packing`.
  */
 #ifndef EW_RASTER_WORK_H
 #define EW_RASTER_WORK_H
@@ -35,13 +35,14 @@ enum {
 /* What is read most lies within short offsets. What follows the planes is for generic fills
  * only: ew_active leaves it out where it can. */
 typedef struct ew_triangle {
-    uint16_t run_scale;         /* of run_length in span.c                       */
+    uint16_t run_scale;         /* of ew_run_length in run.h                     */
     int16_t run_exponent;
     uint16_t run_tolerance;     /* 1/16 px, 0 for runs of fixed length           */
     uint16_t longest, shortest; /* run, px                                       */
+    uint16_t sure_run;          /* spans up to so many pixels are filled in one go */
     uint16_t column; /* the pixel column that `row` values belong to: inside the scissor and the
                         triangle's box */
-    uint8_t run_shift;          /* -run_exponent, 0 to 31: of one_run_suffices   */
+    uint8_t run_shift;          /* -run_exponent, 0 to 31: of ew_one_run_suffices */
     uint8_t attributes;         /* how many planes follow that of w: 0, 2, 5     */
     uint8_t is_wide;
     uint8_t is_quick;           /* rows_of_texture (span.c) will do              */
@@ -65,7 +66,8 @@ typedef struct ew_corners {
     const struct ew_raster_vertex *v[3];
     ew_snapped x[3], y[3];
     int32_t first, end, from, to;    /* rows and columns of its box in the scissor */
-    int32_t steps;                   /* rows and columns of the whole box, added   */
+    int32_t x0, y0;                  /* first column and row of the whole box      */
+    int32_t steps;                   /* all of its rows and columns, added         */
     int32_t turn;                    /* the first row below the middle corner      */
     uint8_t top, middle, bottom;     /* numbers of corners, by y                   */
     uint8_t longest;                 /* the side of the edge from top to bottom: 0 is left */
@@ -105,6 +107,7 @@ typedef struct ew_basis {
 typedef struct ew_weights {
     int32_t x1, x2, y1, y2; /* |.| <= 2^30 */
     int shift;              /* 26 to 38    */
+    int32_t there1, there2; /* their weights at the box's first pixel, 2^26 is 1; |.| <= 2^30 */
 } ew_weights;
 
 /* What planes are made of: values of w' and of all attributes at corners 1 and 2, less those
@@ -124,6 +127,19 @@ typedef struct ew_linear {
     uint32_t shade[3], dshade[3];
 } ew_linear;
 
+/* What w', u and v of a span change by, to be drawn moved. */
+typedef struct ew_move {
+    uint32_t w, u, v;
+} ew_move;
+
+/* How long the runs of a piece may be: src/raster/run.h. */
+typedef struct ew_run_limit {
+    uint32_t scale;
+    uint32_t fall;    /* tolerance, 1/16 px, where w falls                                */
+    int32_t longest, shortest; /* shortest: 4 t                                           */
+    int down;
+} ew_run_limit;
+
 /* Attributes of a run's first pixel, with their fraction bits, and what they grow by. */
 typedef struct ew_attribute_run {
     uint32_t u, du, v, dv;
@@ -131,31 +147,46 @@ typedef struct ew_attribute_run {
     uint32_t shade[3], dshade[3];
 } ew_attribute_run;
 
-/* Where ew_fill_any goes on, and 1/z there. */
+/* Where ew_loop_fill or ew_fill_any goes on, and 1/z there. */
 typedef struct ew_position {
     uint16_t x, y;
     uint32_t w, dw;
+    uint8_t loop; /* ew_raster.loop where the piece lets it, else 0                        */
 } ew_position;
 
-/* What the pixel loop of arch.h reads; its machine code knows the order. */
-typedef struct ew_pixel_loop {
-    uint32_t w, dw, high, low, dhigh, dlow;
-    const uint16_t *texels;
-    uint32_t mask, turn;
-    const uint16_t *end, *rest;
-} ew_pixel_loop;
-
-/* How a run's u and v become one texel number: span.c. */
+/* How a run's u and v become one texel number (span.c): what depends on the texture alone, and
+ * what the pixel loop of arch.h reads; its machine code knows the order. */
 typedef struct ew_packing {
-    ew_pixel_loop loop;
-    uint16_t *colour, *depth; /* where the next pixel goes                                */
-    uint32_t low;             /* bits of v's texel                                        */
-    uint32_t u_base, v_base;
-    uint8_t log2_height, u_shift, v_shift, newton;
-    uint16_t x, y;            /* its position, for tests                                  */
+    const uint16_t *texels;
+    uint32_t turn, mask;   /* texel numbers are shifted by EW_INDEX_SHIFT (arch.h)         */
+    uint32_t dhigh, dlow;
+    const uint16_t *rest, *end;
+    uint32_t low;          /* bits of v's texel                                            */
+    uint8_t log2_width, log2_height;
+    uint8_t is_256;        /* the texture is 256 x 256                                     */
 } ew_packing;
 
-/* ---- fills (fill.c, texture.c) ---- */
+/* Where the next pixel goes, and 1/z there, uq1.31. */
+typedef struct ew_pen {
+    uint16_t *colour, *depth;
+    uint32_t w, dw;
+    uint16_t x, y; /* for tests                                                            */
+} ew_pen;
+
+/* ---- fills (loops.c, fill.c, texture.c) ---- */
+
+/* What the loops of loops.c need of a row, the texture and the triangle. */
+typedef struct ew_loop_work {
+    void *colour;              /* the row's first pixels                                   */
+    uint16_t *depth;           /* the same, or NULL                                        */
+    const uint8_t *thresholds; /* of the row's dither                                      */
+    const uint16_t *texels;
+    uint32_t columns, rows;    /* masks: of a column, of a row times the width             */
+    uint32_t u_origin, v_origin; /* added to u and v, texels with 20 bits of fraction      */
+    uint32_t key, turn;        /* 65,536: none; how far pixels are rotated                 */
+    uint8_t down, up;          /* shifts: of v to a row times the width, of u and v        */
+    uint8_t of_dither;         /* a shift that takes off what dither adds, or all          */
+} ew_loop_work;
 
 /* A run: a piece of a span over which everything is linear. Values belong to its first
  * pixel, steps lead to the next; sums wrap and are only meaningful inside the run. */
@@ -194,9 +225,9 @@ typedef struct ew_sampler {
     const uint8_t *texels;
     const uint8_t *mask; /* NULL: none                                                     */
     ew_axis u, v;
-    uint32_t sum[3];   /* of a pixel's texels, by their weights                             */
-    uint8_t weight[4];
-    uint16_t texel[3]; /* the colour of a texel, then of the pixel                          */
+    uint8_t weight[4]; /* of four texels                                                   */
+    uint16_t texel[3]; /* the colour of one of them                                        */
+    uint16_t level_colour[3]; /* of a pixel, on the second of two levels                   */
     uint16_t level, next_share; /* the level, and the share of the one behind it            */
     uint16_t row_bytes, mask_row_bytes; /* 4096 at most                                     */
     uint16_t share;    /* of 256: how far they take the place of what the piece has        */
@@ -210,12 +241,16 @@ typedef struct ew_sampler {
 
 /* While spans are drawn. */
 typedef struct ew_span_work {
-    ew_linear linear; /* and the packing: near each other, which short offsets reach       */
+    ew_linear linear; /* and the pen: near each other, which short offsets reach           */
+    ew_move by;
+    ew_run_limit limit;
+    int32_t left; /* pixels of the piece                                                  */
     union {
-        ew_packing packing;
+        ew_pen pen;
         struct {
             ew_attribute_run attributes;
             ew_position position;
+            ew_loop_work loop;
             ew_run run;
             ew_piece piece;
             ew_sampler sampler;
@@ -224,6 +259,7 @@ typedef struct ew_span_work {
 } ew_span_work;
 
 typedef struct ew_raster_work {
+    ew_packing packing; /* set with the material                                       */
     ew_triangle triangle;
     ew_corners corners;
     ew_edge edge[2]; /* left, right                                                       */

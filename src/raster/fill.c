@@ -1,5 +1,5 @@
-/* The generic span path: every combination of material, texture and target. span.c has
- * loops of its own for the common ones; both draw the same pixels.
+/* The generic span path: every combination of material, texture and target. What is drawn most
+ * has loops of its own, in span.c and loops.c; they draw the same pixels.
  *
  * A run is drawn in pieces of EW_PIECE pixels. A piece goes through one step after the other
  * - depth test, texture, depth write, light, fog, target - each a loop over its live pixels,
@@ -41,7 +41,7 @@ static void trace(const ew_raster *raster, const ew_run *run, int n)
 
 static uint16_t *depth_at(const ew_raster *raster, const ew_run *run)
 {
-    return raster->target.depth + (size_t)(run->y - raster->target.first_row) * raster->target.stride + run->x;
+    return raster->target.depth + ew_row_start(&raster->target, run->y) + run->x;
 }
 
 EW_NOINLINE void test_depth(const ew_raster *raster, const ew_run *run, ew_piece *piece)
@@ -64,10 +64,10 @@ EW_NOINLINE void write_depth(const ew_raster *raster, const ew_run *run, const e
     }
 }
 
-EW_NOINLINE void paint(const ew_raster *raster, ew_piece *piece)
+EW_HOT void ew_piece_paint(ew_piece *piece, const ew_target *target, uint16_t rgb565)
 {
     uint16_t c[3];
-    ew_decode_565(c, raster->material.colour, ew_wide(&raster->target));
+    ew_decode_565(c, rgb565, ew_wide(target));
     for (int i = 0; i < piece->n; i++) {
         for (int k = 0; k < 3; k++) piece->colour[i][k] = c[k];
     }
@@ -103,7 +103,8 @@ EW_NOINLINE void fog(const ew_raster *raster, const ew_run *run, ew_piece *piece
     }
 }
 
-static void fill_piece(ew_raster *raster, const ew_run *run, int n)
+/* Returns whether the sampler is ready for the next piece; `ready` says whether it is for this one. */
+static int fill_piece(ew_raster *raster, const ew_run *run, int n, int ready)
 {
     const int flags = raster->material.flags;
     ew_piece *piece = &raster->work.now.span.fill.any.piece;
@@ -113,30 +114,31 @@ static void fill_piece(ew_raster *raster, const ew_run *run, int n)
     piece->live = (uint8_t)(0xFFu >> (EW_PIECE - n));
     if (raster->target.depth && !(flags & EW_NO_DEPTH_TEST)) {
         test_depth(raster, run, piece);
-        if (!piece->live) return;
+        if (!piece->live) return 0;
     }
     if (raster->texture.texels) {
         ew_sampler *s = &raster->work.now.span.fill.any.sampler;
-        ew_texture_start(s, raster, run);
+        if (!ready) ew_texture_start(s, raster, run);
         do ew_texture_sample(s, piece);
         while (ew_texture_next(s, raster, run));
     } else {
-        paint(raster, piece);
+        ew_piece_paint(piece, &raster->target, raster->material.colour);
     }
     if (raster->target.depth && !(flags & EW_NO_DEPTH_WRITE)) write_depth(raster, run, piece);
     if (EW_WITH_SHADING && (flags & EW_SHADED)) shade(run, piece);
     if (EW_WITH_FOG && (flags & EW_FOG)) fog(raster, run, piece);
     ew_target_put(&raster->target, piece, raster->material.blend);
+    return !EW_WITH_MIPS || raster->texture.levels <= 1;
 }
 
-void ew_fill_any(ew_raster *raster, ew_run *run, int32_t n)
+EW_HOT void ew_fill_any(ew_raster *raster, ew_run *run, int32_t n)
 {
-    for (;;) {
+    for (int ready = 0;;) {
         const int count = n < EW_PIECE ? (int)n : EW_PIECE;
 #if EW_TRACE
         trace(raster, run, count);
 #endif
-        fill_piece(raster, run, count);
+        ready = fill_piece(raster, run, count, ready);
         n -= count;
         if (n <= 0) return;
         run->x = (uint16_t)(run->x + EW_PIECE);

@@ -5,7 +5,12 @@
 
 #include "edgewalk/raster.h"
 
+/* The colours of the piece's n pixels become one. */
+void ew_piece_paint(ew_piece *piece, const ew_target *target, uint16_t rgb565);
 
+/* A rectangle inside the target in one colour; where `depth`, the target's, is not NULL it
+ * becomes 0 there. Uses work.now.span.fill.any.piece. */
+void ew_raster_fill(ew_raster *raster, const ew_rect *r, uint16_t rgb565, uint16_t *depth);
 
 /* Draws n pixels. The run is used up: it moves along. */
 void ew_fill_any(ew_raster *raster, ew_run *run, int32_t n);

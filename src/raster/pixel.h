@@ -14,6 +14,12 @@ static inline int ew_is_aligned16(const void *p)
     return (uintptr_t)p % offsetof(struct probe, item) == 0;
 }
 
+/* Pixels of the target's memory before those of the picture's row y. */
+static inline size_t ew_row_start(const ew_target *target, uint32_t y)
+{
+    return (size_t)(y - target->first_row) * target->stride;
+}
+
 /* ---- packed rows: 2^log2_bits bits per item, up to 8, the left one in the high bits ---- */
 
 /* Items per byte less one. */

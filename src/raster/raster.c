@@ -1,9 +1,12 @@
 /* The raster context: target, scissor, material, fog, clearing. */
 #include "edgewalk/raster.h"
 
+#include "fill.h"
+#include "loops.h"
 #include "pixel.h"
 #include "target.h"
 #include "texture.h"
+#include "triangle.h"
 
 /* All rows of the target. */
 static void scissor_rows(ew_raster *raster)
@@ -74,20 +77,6 @@ static int check_material(const ew_material *m)
     return EW_OK;
 }
 
-/* What span.c's loop for textures knows: RGB565 as it is stored, from one power of two by
- * another, at most 2^16 texels, to a target with depth. Dither changes nothing that comes
- * from as many bits. */
-static int is_plain(const ew_raster *raster)
-{
-    const ew_target *target = &raster->target;
-    const ew_texture *t = &raster->texture;
-    return t->texels && t->format == EW_TEXTURE_RGB565 && !t->wrap_u && !t->wrap_v && t->levels <= 1 &&
-           !(t->width & (t->width - 1u)) && !(t->height & (t->height - 1u)) && raster->log2_width >= 1 &&
-           raster->log2_height >= 1 && raster->log2_width + raster->log2_height <= 16 &&
-           raster->material.filter == EW_FILTER_NEAREST && !raster->material.blend &&
-           !(raster->material.flags & ~EW_DOUBLE_SIDED) && target->depth && target->format == EW_TARGET_RGB565;
-}
-
 /* Rounded up. */
 static uint8_t log2_of(uint32_t size) { return (uint8_t)(32 - ew_clz32(size - 1u)); }
 
@@ -104,7 +93,8 @@ int ew_raster_set_material(ew_raster *raster, const ew_material *material)
     raster->inverse_height = ew_texture_inverse(raster->texture.height);
     raster->log2_width = log2_of(raster->texture.width);
     raster->log2_height = log2_of(raster->texture.height);
-    raster->plain = (uint8_t)is_plain(raster);
+    raster->loop = ew_loop_of(raster);
+    if (raster->loop == LOOP_TEXTURED) ew_packing_init(&raster->work.packing, raster);
     return EW_OK;
 }
 
@@ -127,25 +117,32 @@ int ew_raster_set_fog(ew_raster *raster, uint16_t rgb565, ew_uq1_31 w_near, ew_u
 
 /* ---- clear ---- */
 
-void ew_raster_clear(ew_raster *raster, uint16_t rgb565)
+EW_HOT void ew_raster_fill(ew_raster *raster, const ew_rect *r, uint16_t rgb565, uint16_t *depth)
 {
-    const ew_rect *r = &raster->scissor;
     const ew_target *target = &raster->target;
-    /* dither leaves RGB565 alone */
-    const int as_it_is = !EW_WITH_TARGET_FORMATS || target->format == EW_TARGET_RGB565;
+    const int as_it_is = ew_target_takes_words(target);
+    const uint32_t n = (uint32_t)r->x1 - r->x0;
     ew_piece *piece = &raster->work.now.span.fill.any.piece;
     piece->live = 0xFF;
-    for (int i = 0; i < EW_PIECE; i++) ew_decode_565(piece->colour[i], rgb565, ew_wide(target));
+    piece->n = EW_PIECE;
+    ew_piece_paint(piece, target, rgb565);
     for (uint16_t y = r->y0; y < r->y1; y++) {
-        const size_t row = (size_t)(y - target->first_row) * target->stride;
-        if (!as_it_is) {
+        if (as_it_is) {
+            uint16_t *words = ew_target_words(target, y) + r->x0;
+            for (uint32_t i = 0; i < n; i++) words[i] = rgb565;
+        } else {
             piece->x = r->x0;
             piece->y = y;
             ew_target_fill(target, piece, r->x1);
         }
-        for (uint16_t x = r->x0; x < r->x1; x++) {
-            if (as_it_is) ((uint16_t *)target->colour)[row + x] = rgb565;
-            if (target->depth) target->depth[row + x] = 0;
+        if (depth) {
+            uint16_t *row = depth + ew_row_start(target, y) + r->x0;
+            for (uint32_t i = 0; i < n; i++) row[i] = 0;
         }
     }
+}
+
+void ew_raster_clear(ew_raster *raster, uint16_t rgb565)
+{
+    ew_raster_fill(raster, &raster->scissor, rgb565, raster->target.depth);
 }

@@ -12,18 +12,16 @@
  * Source: K.-L. Low, "Perspective-Correct Interpolation", 2002, equations 12 and 16:
  * 1/z and (attribute)/z are linear on the screen. Plane coefficients: docs/conventions.md.
  */
-#include "triangle.h"
-
-#include "arch.h"
+#include "loops.h"
+#include "run.h"
 
 static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
 static uint32_t smaller(uint32_t a, uint32_t b) { return a < b ? a : b; }
 
 /* ---- corners ---- */
 
-
 /* From the differences, with corner 0 at (x, y). */
-EW_NOINLINE void basis_init(ew_basis *b, int32_t x, int32_t y, const ew_corners *c)
+static EW_OWN_FRAME void basis_init(ew_basis *b, int32_t x, int32_t y, const ew_corners *c)
 {
     b->area = ew_mul_s32(b->dx1, b->dy2) - ew_mul_s32(b->dx2, b->dy1);
     b->reach = larger(larger(ew_abs32(b->dx1), ew_abs32(b->dx2)), larger(ew_abs32(b->dy1), ew_abs32(b->dy2)));
@@ -49,7 +47,6 @@ static void basis_of_snapped(ew_basis *b, const ew_corners *c)
 
 /* ---- narrow triangles ---- */
 
-
 /* Whether 32 bits will do. With L the box and h the height of the triangle: L below 256 px,
  * h at least L/8 and 1/8 px; 1/z within a factor of four; and what steps of 32 bits lose over
  * all of its rows and columns is at most 1/256 texel (docs/error-bound.md). */
@@ -59,10 +56,10 @@ static int is_narrow(const ew_basis *b, const ew_corners *c, uint32_t w_min, uin
     return b->reach < UINT32_C(1) << 20 && w_max / 4 <= w_min &&
            (b->area > 0) == c->positive &&
            ew_abs64(b->area) >= (uint64_t)ew_mul_u32(b->reach, b->reach / 8 + 512) &&
-           (uint64_t)(3 * steps) << bits <= (uint64_t)w_min << 2; /* 2^11 2^27, of 256 px */
+           (uint64_t)(3 * steps + 16) << bits <= (uint64_t)w_min << 2; /* 2^11 2^27, of 256 px */
 }
 
-static void weights_init(ew_weights *g, const ew_basis *b)
+static void weights_init(ew_weights *g, const ew_basis *b, const ew_corners *c)
 {
     uint64_t area = ew_abs64(b->area);
     int zeros = ew_clz64(area);
@@ -76,16 +73,22 @@ static void weights_init(ew_weights *g, const ew_basis *b)
     g->y2 = ew_mulh_s32(b->dx1 * ((int32_t)1 << up), r);
     /* d / area = weight 2^(zeros - 94 + 32 - up); 2^12 more for a pixel */
     g->shift = 50 - zeros + up;
+    /* a pixel within a pixel of the box: at most 16 heights away */
+    const int32_t x = b->to_x - (c->from - c->x0) * 4096, y = b->to_y - (c->first - c->y0) * 4096; /* 2^21 */
+    g->there1 = (int32_t)EW_ASR(ew_mul_s32(g->x1, x) + ew_mul_s32(g->y1, y), g->shift - 14);
+    g->there2 = (int32_t)EW_ASR(ew_mul_s32(g->x2, x) + ew_mul_s32(g->y2, y), g->shift - 14);
 }
 
-static void plane32_init(ew_plane32 *p, const ew_basis *b, const ew_weights *g, uint32_t a0, int32_t d1, int32_t d2)
+/* The plane's value at the box's first pixel, from the weights there, then whole steps to where
+ * the row begins: wherever a scissor cuts, the bits are the same. |d| < 2^31. */
+static void plane32_init(ew_plane32 *p, const ew_corners *c, const ew_weights *g, uint32_t a0, int32_t d1, int32_t d2)
 {
-    /* |d| < 2^31; height 1/8 px at least: gradients stay below 2^35 a pixel */
-    int64_t gx = EW_ASR(ew_mul_s32(d1, g->x1) + ew_mul_s32(d2, g->x2), g->shift);
-    int64_t gy = EW_ASR(ew_mul_s32(d1, g->y1) + ew_mul_s32(d2, g->y2), g->shift);
-    p->row = a0 + (uint32_t)EW_ASR(gx * b->to_x + gy * b->to_y, 12); /* 2^35 2^21 */
-    p->dx = (uint32_t)gx;
-    p->dy = (uint32_t)gy;
+    const uint32_t gx = (uint32_t)EW_ASR(ew_mul_s32(d1, g->x1) + ew_mul_s32(d2, g->x2), g->shift);
+    const uint32_t gy = (uint32_t)EW_ASR(ew_mul_s32(d1, g->y1) + ew_mul_s32(d2, g->y2), g->shift);
+    const uint32_t there = a0 + (uint32_t)EW_ASR(ew_mul_s32(d1, g->there1) + ew_mul_s32(d2, g->there2), 26);
+    p->row = there + gx * (uint32_t)(c->from - c->x0) + gy * (uint32_t)(c->first - c->y0);
+    p->dx = gx;
+    p->dy = gy;
 }
 
 /* ---- wide triangles ---- */
@@ -141,7 +144,6 @@ static void plane64_init(ew_plane64 *p, const ew_basis *b, uint32_t r, int zeros
     p->dy = gy << 12;
 }
 
-
 /* Where the finer positions' planes could leave the values of the corners too far, those of
  * the snapped ones are taken instead, which are never evaluated outside. */
 static void wide_planes(ew_triangle *t, ew_basis *b, const ew_corners *c, const ew_differences *of, uint32_t w0, uint32_t w_min)
@@ -164,48 +166,62 @@ static void wide_planes(ew_triangle *t, ew_basis *b, const ew_corners *c, const 
 
 /* ---- the ladder ---- */
 
-/* Never below the true distance of two corners, at most 12 % above it; q20.12. */
-static uint32_t length_of(const ew_raster_vertex *a, const ew_raster_vertex *b)
+/* Never below the true length, at most 12 % above it; q20.12. */
+static uint32_t length_of(uint32_t dx, uint32_t dy)
 {
-    uint32_t dx = ew_abs32(a->x - b->x), dy = ew_abs32(a->y - b->y); /* <= 2^30 */
+    dx = ew_abs32((int32_t)dx), dy = ew_abs32((int32_t)dy); /* <= 2^31 */
     return dx > dy ? dx + dy / 2 : dy + dx / 2;
+}
+
+/* Lengths of edges and differences of 1/z along them: corners 0 and 1, 0 and 2, 1 and 2. */
+typedef struct sides {
+    uint32_t length[3], dw[3];
+} sides;
+
+static uint32_t apart(uint32_t a, uint32_t b) { return a > b ? a - b : b - a; }
+
+static void sides_init(sides *s, const ew_basis *b, const ew_raster_vertex *const v[3])
+{
+    s->length[0] = length_of((uint32_t)b->dx1, (uint32_t)b->dy1), s->dw[0] = apart(v[0]->w, v[1]->w);
+    s->length[1] = length_of((uint32_t)b->dx2, (uint32_t)b->dy2), s->dw[1] = apart(v[0]->w, v[2]->w);
+    s->length[2] = length_of((uint32_t)b->dx2 - (uint32_t)b->dx1, (uint32_t)b->dy2 - (uint32_t)b->dy1);
+    s->dw[2] = apart(v[1]->w, v[2]->w);
 }
 
 /* Whether attributes drawn linearly over the whole triangle are displaced by at most the
  * tolerance: with M = L |dw| of the edges, the largest of them M_1,
  * max(3 M_1, 2 M_1 + M_2 + M_3) <= 12 t w_min (docs/error-bound.md). */
-static int affine_suffices(const ew_raster_vertex *const v[3], uint32_t tolerance, uint32_t w_min)
+static int affine_suffices(const sides *s, uint32_t tolerance, uint32_t w_min)
 {
-    uint64_t allowed = (uint64_t)w_min * (UINT32_C(3072) * tolerance), sum = 0, most = 0; /* q12: 2^31 2^20 */
-    for (int i = 0; i < 3; i++) {
-        const ew_raster_vertex *a = v[i], *b = v[i == 2 ? 0 : i + 1];
-        uint32_t dw = a->w > b->w ? a->w - b->w : b->w - a->w;
-        uint64_t m = ew_mul_u32(length_of(a, b), dw); /* <= 2^31 2^31 */
-        if (m > allowed) return 0;
-        sum += m;
-        if (m > most) most = m;
-    }
+    const uint64_t allowed = ew_mul_u32(w_min, UINT32_C(3072) * tolerance); /* q12: 2^31 2^20 */
+    const uint64_t a = ew_mul_u32(s->length[0], s->dw[0]), b = ew_mul_u32(s->length[1], s->dw[1]); /* 2^31.6 2^31 */
+    const uint64_t c = ew_mul_u32(s->length[2], s->dw[2]);
+    if (a > allowed || b > allowed || c > allowed) return 0; /* 2^51 */
+    const uint64_t most = a > b ? (a > c ? a : c) : b > c ? b : c, sum = a + b + c;
     return most + (sum > 2 * most ? sum : 2 * most) <= allowed;
 }
 
 /* Whether any point of the triangle is within the tolerance of every other. */
-static int constant_suffices(const ew_raster_vertex *const v[3], uint32_t tolerance)
+static int constant_suffices(const sides *s, uint32_t tolerance)
 {
-    uint32_t t = tolerance * 256u;
-    return length_of(v[0], v[1]) <= t && length_of(v[1], v[2]) <= t && length_of(v[2], v[0]) <= t;
+    const uint32_t t = tolerance * 256u;
+    return s->length[0] <= t && s->length[1] <= t && s->length[2] <= t;
 }
 
-static uint8_t choose_rung(const ew_raster *raster, const ew_raster_vertex *const v[3], uint32_t w_min, int newton)
+static uint8_t choose_rung(const ew_raster *raster, const ew_basis *b, const ew_raster_vertex *const v[3], uint32_t w_min,
+                           int newton)
 {
     const ew_material *m = &raster->material;
+    sides s;
     if (m->rung != EW_RUNG_AUTO) return m->rung;
-    if (m->tolerance > 0 && raster->texture.levels <= 1 && constant_suffices(v, m->tolerance)) return EW_RUNG_CONSTANT;
-    if (affine_suffices(v, m->tolerance, w_min)) return EW_RUNG_AFFINE;
+    sides_init(&s, b, v);
+    if (m->tolerance > 0 && raster->texture.levels <= 1 && constant_suffices(&s, m->tolerance)) return EW_RUNG_CONSTANT;
+    if (affine_suffices(&s, m->tolerance, w_min)) return EW_RUNG_AFFINE;
     return m->tolerance > 0 ? EW_RUNG_RUNS : newton ? EW_RUNG_EXACT : EW_RUNG_TABLE;
 }
 
 /* A run of N pixels is displaced by at most N^2 |dw| / (4 w) (docs/error-bound.md). The
- * largest N is the root of 4 t w / |dw|; run_length in span.c takes (16 N)^2 as
+ * largest N is the root of 4 t w / |dw|; ew_run_length in run.h takes (16 N)^2 as
  * (w' / 2^15) run_scale 2^run_exponent. |dw| = m 2^-zeros, m normalised; 0 for m = 0. */
 static void run_scale_init(ew_triangle *t, uint32_t m, int zeros, uint32_t tolerance)
 {
@@ -225,31 +241,61 @@ static void run_scale_init(ew_triangle *t, uint32_t m, int zeros, uint32_t toler
     if (t->run_exponent < 0) t->run_shift = (uint8_t)smaller((uint32_t)-t->run_exponent, 31);
 }
 
-static void runs_init(ew_triangle *t, const ew_raster *raster)
+/* How many pixels of a wide triangle steps of 32 bits will do for, from where w' is smallest:
+ * steps_suffice in span.c. */
+static uint32_t sure_steps(const ew_triangle *t, uint32_t w_min)
 {
-    /* where 1/z does not change along rows, a run is exact whatever its length */
-    const int flat = t->is_wide ? t->plane.wide[EW_PLANE_W].dx == 0 : t->plane.narrow[EW_PLANE_W].dx == 0;
-    if (flat && raster->material.rung == EW_RUNG_AUTO && t->rung != EW_RUNG_CONSTANT && t->rung != EW_RUNG_AFFINE) {
+    const uint32_t n = t->rung == EW_RUNG_AFFINE ? UINT32_C(1) << (32 - t->uv_bits) :
+                                                   w_min >> (t->uv_bits - 1); /* n 2^bits <= 2 w' */
+    return smaller(n, EW_LONGEST_RUN);
+}
+
+/* Up to how many pixels no span has to be asked whether it may be filled in one go. Outside
+ * of the fine triangle w' is at least 3/4 of the corners' smallest, and a run's far end may be
+ * one step beyond its own. dw is the step's size, a fraction of 2^64. */
+static uint16_t sure_run_of(const ew_triangle *t, uint64_t dw, uint32_t w_min)
+{
+    uint32_t most = t->is_wide ? sure_steps(t, w_min - w_min / 4) : EW_LONGEST_RUN;
+    if (t->rung == EW_RUNG_AFFINE) return (uint16_t)most;
+    if (t->rung == EW_RUNG_RUNS) {
+        const uint32_t step = (uint32_t)(dw >> 32) + 1u;
+        const uint32_t far_end = w_min - w_min / 4 > step ? w_min - w_min / 4 - step : 0;
+        const uint32_t n = ew_root16((far_end >> 15) * t->run_scale, t->run_exponent) >> 4;
+        most = 4u * n < t->run_tolerance ? 0 : smaller(n, most);
+    }
+    return (uint16_t)smaller(most, t->longest);
+}
+
+static uint16_t longest_of(const ew_triangle *t, const ew_raster *raster)
+{
+    if (t->rung == EW_RUNG_RUNS_8) return 8;
+    if (t->rung == EW_RUNG_RUNS_16) return 16;
+    if (t->rung == EW_RUNG_RUNS_32) return 32;
+    if (raster->texture.levels > 1) return 16; /* the level of a mip chain is a run's */
+    /* a slope is off by at most half a unit: over the longest run by 1/128 texel */
+    return EW_FRACTION(t->uv_bits) < 15 ? (uint16_t)(UINT32_C(1) << (EW_FRACTION(t->uv_bits) - 6)) : EW_LONGEST_RUN;
+}
+
+static void runs_init(ew_triangle *t, const ew_raster *raster, uint32_t w_min)
+{
+    const uint64_t dw = t->is_wide ? ew_abs64((int64_t)t->plane.wide[EW_PLANE_W].dx) :
+                                     (uint64_t)ew_abs32((int32_t)t->plane.narrow[EW_PLANE_W].dx) << 32;
+    const int automatic = raster->material.rung == EW_RUNG_AUTO;
+    t->run_tolerance = t->sure_run = 0;
+    if (t->rung == EW_RUNG_TABLE || t->rung == EW_RUNG_EXACT) {
+        /* where 1/z does not change along rows, a run is exact whatever its length */
+        if (dw != 0 || !automatic) return;
         t->rung = EW_RUNG_RUNS;
     }
-    t->longest = EW_LONGEST_RUN;
+    if (t->rung == EW_RUNG_AFFINE) t->sure_run = sure_run_of(t, dw, w_min);
+    if (t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_CONSTANT) return;
+    t->longest = longest_of(t, raster);
     /* an explicit rung is taken at its word, but for runs of one pixel */
-    t->shortest = raster->material.rung == EW_RUNG_AUTO ? (uint16_t)larger(raster->shortest_run, 2) : 2;
-    t->run_tolerance = t->rung == EW_RUNG_RUNS ? raster->material.tolerance : 0;
-    /* a slope is off by at most half a unit: over the longest run by 1/128 texel */
-    if (EW_FRACTION(t->uv_bits) < 15) t->longest = (uint16_t)(1u << (EW_FRACTION(t->uv_bits) - 6));
-    if (raster->texture.levels > 1) t->longest = 16; /* the level of a mip chain is a run's */
-    if (t->rung == EW_RUNG_RUNS_8) t->longest = 8;
-    if (t->rung == EW_RUNG_RUNS_16) t->longest = 16;
-    if (t->rung == EW_RUNG_RUNS_32) t->longest = 32;
-    if (t->is_wide) {
-        uint64_t dx = ew_abs64((int64_t)t->plane.wide[EW_PLANE_W].dx);
-        int zeros = ew_clz64(dx);
-        run_scale_init(t, dx ? (uint32_t)((dx << zeros) >> 32) : 0, zeros, raster->material.tolerance);
-    } else {
-        uint32_t dx = ew_abs32((int32_t)t->plane.narrow[EW_PLANE_W].dx);
-        run_scale_init(t, dx ? dx << ew_clz32(dx) : 0, ew_clz32(dx), raster->material.tolerance);
-    }
+    t->shortest = automatic ? (uint16_t)larger(raster->shortest_run, 2) : 2;
+    if (t->rung == EW_RUNG_RUNS) t->run_tolerance = raster->material.tolerance;
+    const int zeros = ew_clz64(dw);
+    run_scale_init(t, dw ? (uint32_t)((dw << zeros) >> 32) : 0, zeros, raster->material.tolerance);
+    t->sure_run = sure_run_of(t, dw, w_min);
 }
 
 /* ---- attributes ---- */
@@ -268,7 +314,7 @@ static int32_t attribute(int32_t d, uint32_t w, int bits, int affine)
 
 static uint8_t plainness(const ew_raster *raster, uint32_t w_min, uint32_t w_max)
 {
-    if (!raster->plain) return PLAIN_NEVER;
+    if (raster->loop != LOOP_TEXTURED) return PLAIN_NEVER;
     /* what lies outside of the corners (stays_near), and steps' rounding */
     return w_min >= 65536u && w_max <= 0x50000000u ? PLAIN_ALWAYS : PLAIN_SOMETIMES;
 }
@@ -331,8 +377,9 @@ int ew_setup(ew_raster *raster)
         if (bits > EW_BITS_MOST) return EW_ERR_RANGE;
         if (bits > t->uv_bits) t->uv_bits = (uint8_t)bits;
     }
+    basis_of_vertices(b, c);
     int needs_newton = t->uv_bits > TABLE_REACH;
-    t->rung = t->attributes ? choose_rung(raster, v, w_min, needs_newton) : EW_RUNG_CONSTANT;
+    t->rung = t->attributes ? choose_rung(raster, b, v, w_min, needs_newton) : EW_RUNG_CONSTANT;
     t->newton = (uint8_t)(t->rung == EW_RUNG_EXACT || (needs_newton && t->rung != EW_RUNG_TABLE));
 
     t->w_lead = (uint8_t)smaller((uint32_t)ew_clz32(w_max + w_max / 2), 24);
@@ -346,20 +393,18 @@ int ew_setup(ew_raster *raster)
     if (t->rung == EW_RUNG_CONSTANT) t->attributes = 0; /* corner 0's are taken everywhere */
 
     t->column = (uint16_t)c->from;
-    basis_of_vertices(b, c);
     uint32_t least = smaller(smaller(w[0], w[1]), w[2]);
     t->is_wide = (uint8_t)!is_narrow(b, c, least, larger(larger(w[0], w[1]), w[2]), t->uv_bits);
     if (t->is_wide) {
         wide_planes(t, b, c, of, w[0], least);
     } else {
         ew_weights *g = &raster->work.now.setup.weights;
-        weights_init(g, b);
+        weights_init(g, b, c);
         for (int i = 0; i <= t->attributes; i++) {
-            plane32_init(&t->plane.narrow[i], b, g, i == EW_PLANE_W ? w[0] : 0, of->d[i][0], of->d[i][1]);
+            plane32_init(&t->plane.narrow[i], c, g, i == EW_PLANE_W ? w[0] : 0, of->d[i][0], of->d[i][1]);
         }
     }
-    runs_init(t, raster);
-    t->is_quick = t->plain == PLAIN_ALWAYS && t->attributes == 2 &&
-                  (t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_RUNS);
+    runs_init(t, raster, least);
+    t->is_quick = t->plain == PLAIN_ALWAYS && t->attributes == 2;
     return EW_OK;
 }

@@ -2,17 +2,16 @@
  *
  * A span is drawn in runs: pieces over which attributes are linear. The affine rung makes one
  * run of it, the bound (docs/error-bound.md) as few as the tolerance allows, the table and
- * exact rungs one for each pixel. A run is filled by one of two loops: `fill_textured` for
- * the common case, ew_fill_any for every other combination of material and target.
+ * exact rungs one for each pixel. A run is filled by `fill_pixels` in the common case, by
+ * ew_loop_fill in some others, by ew_fill_any with every combination of material and target.
  *
  * Spans step in 32 bits. Those of narrow triangles may, whatever they do; those of wide ones
  * are cut where steps would lose too much, and each piece is aligned anew from 64 bits.
  */
 #include "arch.h"
 #include "fill.h"
-#include "triangle.h"
-
-
+#include "loops.h"
+#include "run.h"
 
 static int32_t larger(int32_t a, int32_t b) { return a > b ? a : b; }
 static int32_t smaller(int32_t a, int32_t b) { return a < b ? a : b; }
@@ -48,48 +47,6 @@ EW_ALWAYS_INLINE uint32_t slope(uint32_t a, uint32_t da, uint32_t dw, divisor d)
     return over_w(da - (uint32_t)ew_mulh_s32((int32_t)(a << 2), (int32_t)dw), d); /* a dw / 2^30; |a| < 2^29 */
 }
 
-
-/* ---- run lengths ---- */
-
-/* 16 sqrt(q), for q = product 2^exponent, from below: in each octave the chord of the root,
- * at most 2.2 % short. 16 EW_LONGEST_RUN at most. */
-EW_ALWAYS_INLINE uint32_t root_of(uint32_t product, int exponent)
-{
-    if (product == 0) return 0;
-    int zeros = ew_clz32(product);
-    uint32_t m = (product << zeros) >> 16; /* 2^15 to 2^16 */
-    exponent += 31 - zeros;
-    if (exponent >= 26) return 16 * EW_LONGEST_RUN;
-    if (exponent < 0) return 0;
-    /* 2^15 sqrt(m / 2^15), or sqrt 2 times that: (2 - sqrt 2) + (sqrt 2 - 1) x, times sqrt 2 */
-    uint32_t root = exponent & 1 ? 27145u + (m * 19194u >> 15) : 19195u + (m * 13572u >> 15);
-    return root >> (15 - (exponent >> 1));
-}
-
-/* The longest run that the bound allows from a pixel with 1/z = w: N^2 |dw| <= 4 t w at its
- * far end, so with q = 4 t w / |dw|, N = sqrt q where w grows along the run and
- * sqrt(q + 4 t^2) - 2 t where it falls. Twice within a run is as far as w may grow or fall,
- * for the run's slope to be a number of 32 bits: N <= w / |dw| = q / 4 t. */
-EW_ALWAYS_INLINE uint32_t run_length(const ew_triangle *t, uint32_t w, uint32_t dw, int align)
-{
-    const uint32_t tolerance = t->run_tolerance;
-    uint32_t n16 = root_of((w >> 15) * t->run_scale, t->run_exponent - align);
-    if ((int32_t)dw < 0) n16 = n16 > 2u * tolerance ? n16 - 2u * tolerance : 0;
-    uint32_t n = n16 >> 4;
-    if (4u * n < tolerance) n = 4u * n * n / tolerance;
-    return n < t->longest ? n : t->longest;
-}
-
-
-/* Whether a span of n pixels, at most EW_LONGEST_RUN, may be one run; as in run_length. */
-EW_ALWAYS_INLINE int one_run_suffices(const ew_triangle *t, uint32_t w, uint32_t dw, int32_t n)
-{
-    /* the tangent's far end is the mirrored first pixel: one beyond the last where n is even */
-    int32_t far_end = smaller((int32_t)w, (int32_t)(w + dw * (uint32_t)n));
-    return far_end > 0 && 4u * (uint32_t)n >= t->run_tolerance &&
-           (uint32_t)(n * n) << 8 <= ((uint32_t)far_end >> 15) * t->run_scale >> t->run_shift;
-}
-
 /* ---- textured, depth tested and written: the common case ---- */
 
 /* How a run's u and v become one texel number (t->plain says where this will do: depth inside
@@ -98,75 +55,81 @@ EW_ALWAYS_INLINE int one_run_suffices(const ew_triangle *t, uint32_t w, uint32_t
  * the texel number together; what v's texel carries goes into u's fraction, 256 times 2^-16
  * texel at most. */
 
-static void packing_init(ew_packing *k, const ew_raster *raster, const ew_triangle *t)
+void ew_packing_init(ew_packing *k, const ew_raster *raster)
 {
-    k->loop.texels = raster->texture.texels;
-    k->loop.turn = 32u - raster->log2_width;
+    const uint32_t texels = UINT32_C(1) << (raster->log2_width + raster->log2_height); /* 2^16 at most */
+    k->texels = raster->texture.texels;
+    k->turn = 32u - EW_INDEX_SHIFT - raster->log2_width;
+    k->mask = (texels - 1u) << EW_INDEX_SHIFT;
+    k->is_256 = raster->log2_width == 8 && raster->log2_height == 8;
     k->low = (UINT32_C(1) << raster->log2_height) - 1u;
-    k->loop.mask = (k->low + 1u) * (UINT32_C(1) << raster->log2_width) - 1u;
+    k->log2_width = raster->log2_width;
     k->log2_height = raster->log2_height;
-    k->u_shift = t->u_shift, k->v_shift = t->v_shift;
-    k->u_base = t->u_base, k->v_base = t->v_base;
-    k->newton = t->newton;
 }
 
 /* w' 2^align = w 2^(lead + align - 1) as uq1.31, and its step. */
 EW_ALWAYS_INLINE uint32_t depth_of(uint32_t w, int down) { return (w >> down) << 1; }
 EW_ALWAYS_INLINE uint32_t depth_step(uint32_t dw, int down) { return (uint32_t)EW_ASR((int32_t)dw, down) << 1; }
 
-#if EW_TRACE
-static void trace(ew_packing *k)
+EW_ALWAYS_INLINE void pen_at(ew_pen *pen, const ew_raster *raster, int32_t x, int32_t y)
 {
-    const ew_pixel_loop *p = &k->loop;
-    uint32_t v = p->high << (32 - k->log2_height) | p->low >> k->log2_height;
-    /* q20.12, modulo the texture's size */
-    ew_trace_fragment(k->x++, k->y, (uint16_t)(p->w >> 15), (ew_q20_12)(p->high >> (p->turn - 12)),
-                      (ew_q20_12)(v >> (20 - k->log2_height)));
+    const int32_t offset = (y - raster->target.first_row) * raster->target.stride + x; /* 2^24 at most */
+    pen->colour = (uint16_t *)raster->target.colour + offset;
+    pen->depth = raster->target.depth + offset;
+    pen->x = (uint16_t)x, pen->y = (uint16_t)y;
 }
-#else
-#define trace(k) ((void)0)
-#endif
 
-/* n > 0 pixels, n at most EW_LONGEST_RUN, of a run with u and v at its first pixel. */
-EW_NOINLINE void fill_textured(ew_packing *k, uint32_t u, uint32_t du, uint32_t v, uint32_t dv, int32_t n)
+/* n > 0 pixels, n at most EW_LONGEST_RUN, of a run with u and v at its first. The pen moves
+ * behind the last. */
+EW_ALWAYS_INLINE void fill_pixels(ew_packing *k, const ew_triangle *t, ew_pen *pen, uint32_t u, uint32_t du,
+                                  uint32_t v, uint32_t dv, int32_t n)
 {
     const int log2_height = k->log2_height;
-    const uint32_t low = k->low;
+    const uint32_t texel = ~k->low;
     /* top-aligned: 2^32 is the texture's size, so that repeating is the wrapping of 32 bits */
-    u = (u << k->u_shift) + k->u_base, v = (v << k->v_shift) + k->v_base;
-    du <<= k->u_shift, dv <<= k->v_shift;
-    ew_pixel_loop *loop = &k->loop;
-    loop->high = (u & ~low) | v >> (32 - log2_height), loop->low = v << log2_height;
+    u = (u << t->u_shift) + t->u_base, v = (v << t->v_shift) + t->v_base;
+    du <<= t->u_shift, dv <<= t->v_shift;
+    uint32_t high = (u & texel) | v >> (32 - log2_height), low = v << log2_height;
     /* v's step has a sign: extended over u's bits, or the sum would lose a borrow */
-    loop->dhigh = (du & ~low) + (uint32_t)EW_ASR((int32_t)dv, 32 - log2_height), loop->dlow = dv << log2_height;
-    uint16_t *c = k->colour, *z = k->depth;
-    k->colour += n;
-    k->depth += n;
+    uint32_t dhigh = (du & texel) + (uint32_t)EW_ASR((int32_t)dv, 32 - log2_height), dlow = dv << log2_height;
+    uint16_t *c = pen->colour, *z = pen->depth;
+    uint32_t w = pen->w, dw = pen->dw;
+    pen->colour = c + n;
+    pen->depth = z + n;
 #if EW_HAS_PIXEL_LOOP && !EW_TRACE
-    ew_fill_pixels(loop, c, z, n);
+    pen->w = ew_fill_pixels(k, c, z, n, w, dw, high, low, dhigh, dlow);
 #else
+    const uint16_t *texels = k->texels;
+    const uint32_t mask = k->mask;
+    const int turn = (int)k->turn;
     for (int32_t i = 0; i < n; i++) {
-        uint32_t d = loop->w >> 15, high = loop->high;
-        trace(k);
+        uint32_t d = w >> 15;
+#if EW_TRACE
+        uint32_t row = high << (32 - log2_height) | low >> log2_height; /* q20.12, modulo the texture's size */
+        ew_trace_fragment(pen->x++, pen->y, (uint16_t)d, (ew_q20_12)(high >> (20 - k->log2_width)),
+                          (ew_q20_12)(row >> (20 - log2_height)));
+#endif
         if (d > z[i]) {
             z[i] = (uint16_t)d;
-            c[i] = loop->texels[(high << (32 - loop->turn) | high >> loop->turn) & loop->mask];
+            c[i] = texels[(high << (32 - turn) | high >> turn) & mask];
         }
-        loop->w += loop->dw;
-        loop->low += loop->dlow;
-        loop->high += loop->dhigh + (loop->low < loop->dlow ? 1u : 0u);
+        w += dw;
+        low += dlow;
+        high += dhigh + (low < dlow ? 1u : 0u);
     }
+    pen->w = w;
 #endif
 }
 
-/* A run of n pixels that is exact at its pixel `half`. */
-EW_NOINLINE void run_of_texture(ew_packing *k, const ew_linear *l, uint32_t half, int32_t n)
+/* u and v times w', and their steps, become the tangent at pixel n / 2 of a run of n, at its first. */
+EW_ALWAYS_INLINE void tangent(const ew_triangle *t, uint32_t w, uint32_t dw, uint32_t *u, uint32_t *du, uint32_t *v,
+                              uint32_t *dv, int32_t n)
 {
-    uint32_t dw = l->dw, du = l->du, dv = l->dv;
-    divisor d = divisor_of(l->w + dw * half, k->newton);
-    uint32_t u = over_w(l->u + du * half, d), v = over_w(l->v + dv * half, d);
-    du = slope(u, du, dw, d), dv = slope(v, dv, dw, d);
-    fill_textured(k, u - du * half, du, v - dv * half, dv, n);
+    const uint32_t half = (uint32_t)n >> 1;
+    const divisor d = divisor_of(w + dw * half, t->newton);
+    *u = over_w(*u + *du * half, d), *v = over_w(*v + *dv * half, d);
+    *du = slope(*u, *du, dw, d), *dv = slope(*v, *dv, dw, d);
+    *u -= *du * half, *v -= *dv * half;
 }
 
 EW_ALWAYS_INLINE void advance(ew_linear *l, uint32_t n)
@@ -176,62 +139,123 @@ EW_ALWAYS_INLINE void advance(ew_linear *l, uint32_t n)
     l->v += l->dv * n;
 }
 
-/* Each pixel with a reciprocal of its own. */
-EW_NOINLINE void textured_pixels(ew_packing *k, ew_linear *l, int32_t n)
+/* d t, for t in 1/16 px. */
+static uint32_t in_tolerance(uint32_t d, uint32_t tolerance)
 {
+    return (uint32_t)EW_ASR((int32_t)d, 4) * tolerance + ((d & 15u) * tolerance >> 4);
+}
+
+/* A tangent is off to one side only. Moved by the tolerance to the other side, it may be
+ * sqrt 2 as long (docs/error-bound.md). Returns whether that can be done for a piece of n
+ * pixels. */
+EW_NOINLINE int move_init(ew_move *by, const ew_triangle *t, const ew_linear *l, int32_t n)
+{
+    enum { LEAST = 8, MOST = 16 }; /* what lies up to 1 px outside of 8 is within the range of numbers */
+    const uint32_t tolerance = t->run_tolerance;
+    by->w = by->u = by->v = 0;
+    if (n < LEAST || tolerance == 0 || tolerance > MOST) return 0;
+    const uint32_t sign = (int32_t)l->dw < 0 ? UINT32_MAX : 1u;
+    const uint32_t fall = in_tolerance(l->dw * sign, tolerance);
+    if (l->w <= fall) return 0;
+    by->w = 0u - fall;
+    by->u = 0u - in_tolerance(l->du, tolerance) * sign;
+    by->v = 0u - in_tolerance(l->dv, tolerance) * sign;
+    return 1;
+}
+
+EW_ALWAYS_INLINE void move(ew_linear *l, const ew_move *by, uint32_t sign)
+{
+    l->w += by->w * sign;
+    l->u += by->u * sign;
+    l->v += by->v * sign;
+}
+
+/* Whether a piece is drawn pixel by pixel whatever its runs would be. */
+static int is_per_pixel(const ew_triangle *t) { return t->rung == EW_RUNG_TABLE || t->rung == EW_RUNG_EXACT; }
+static int is_affine(const ew_triangle *t) { return t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_CONSTANT; }
+
+/* The first run of a piece of n pixels; span->linear is moved if that is to be. */
+EW_NOINLINE int32_t first_run(ew_span_work *span, const ew_triangle *t, int32_t n)
+{
+    ew_linear *l = &span->linear;
+    span->left = n;
+    span->by.w = span->by.u = span->by.v = 0;
+    if (is_per_pixel(t)) return 0;
+    if (is_affine(t) || ew_one_run_suffices(t, l->w, l->dw, l->align, n)) return n;
+    ew_run_limit_init(&span->limit, t, l->dw, l->align, move_init(&span->by, t, l, n));
+    move(l, &span->by, 1);
+    return ew_run_first(&span->limit, l->w);
+}
+
+/* Whether a run of m pixels does not pay. */
+static int is_short(const ew_triangle *t, const ew_span_work *span, int32_t m)
+{
+    return m < span->left && (m < t->shortest || is_per_pixel(t));
+}
+
+/* A run of m pixels, then more as long as they pay. Returns the length of the run that would
+ * come next. */
+EW_NOINLINE int32_t runs_of_texture(ew_packing *k, const ew_triangle *t, ew_span_work *span, int32_t m)
+{
+    ew_linear *l = &span->linear;
+    for (;;) {
+        uint32_t u = l->u, du = l->du, v = l->v, dv = l->dv;
+        m = smaller(m, span->left);
+        if (!is_affine(t)) tangent(t, l->w, l->dw, &u, &du, &v, &dv, m);
+        fill_pixels(k, t, &span->fill.pen, u, du, v, dv, m);
+        span->left -= m;
+        if (span->left == 0) return 0;
+        advance(l, (uint32_t)m);
+        m = ew_run_next(&span->limit, l->w, m);
+        if (is_short(t, span, m)) return m;
+    }
+}
+
+/* Each pixel with a reciprocal of its own: all that are left of the piece, or as many as there may
+ * be before the next look whether a run pays. Returns as runs_of_texture. */
+EW_NOINLINE int32_t pixels_of_texture(ew_packing *k, const ew_triangle *t, ew_span_work *span)
+{
+    enum { AT_ONCE = 16 };
+    ew_linear *l = &span->linear;
+    ew_pen *pen = &span->fill.pen;
+    const int32_t n = is_per_pixel(t) ? span->left : smaller(span->left, AT_ONCE);
+    span->left -= n;
+    move(l, &span->by, UINT32_MAX); /* they are exact where they are */
 #if EW_TRACE
-    for (; n > 0; n--, advance(l, 1)) {
-        divisor d = divisor_of(l->w, k->newton);
-        fill_textured(k, over_w(l->u, d), 0, over_w(l->v, d), 0, 1);
+    for (int32_t i = 0; i < n; i++, advance(l, 1)) {
+        divisor d = divisor_of(l->w, t->newton);
+        fill_pixels(k, t, pen, over_w(l->u, d), 0, over_w(l->v, d), 0, 1);
     }
 #else
-    const uint16_t *texels = k->loop.texels;
-    const int turn = (int)k->loop.turn, log2_width = 32 - turn, v_down = 32 - k->log2_height;
-    uint32_t z = k->loop.w, w = l->w, u = l->u, v = l->v;
-    for (int32_t i = 0; i < n; i++, z += k->loop.dw, w += l->dw, u += l->du, v += l->dv) {
-        uint32_t depth = z >> 15;
-        if (depth <= k->depth[i]) continue;
-        divisor d = divisor_of(w, k->newton);
-        uint32_t column = ((over_w(u, d) << k->u_shift) + k->u_base) >> turn;
-        uint32_t row = ((over_w(v, d) << k->v_shift) + k->v_base) >> v_down;
-        k->depth[i] = (uint16_t)depth;
-        k->colour[i] = texels[(row << log2_width) + column];
+    const uint16_t *texels = k->texels;
+    const int log2_width = k->log2_width, u_down = 32 - log2_width, v_down = 32 - k->log2_height;
+    uint32_t w = l->w, u = l->u, v = l->v;
+    for (int32_t i = 0; i < n; i++, w += l->dw, u += l->du, v += l->dv) {
+        uint32_t depth = pen->w >> 15;
+        pen->w += pen->dw;
+        if (depth <= pen->depth[i]) continue;
+        divisor d = divisor_of(w, t->newton);
+        uint32_t column = ((over_w(u, d) << t->u_shift) + t->u_base) >> u_down;
+        uint32_t row = ((over_w(v, d) << t->v_shift) + t->v_base) >> v_down;
+        pen->depth[i] = (uint16_t)depth;
+        pen->colour[i] = texels[(row << log2_width) + column];
     }
-    k->loop.w = z;
+    pen->depth += n, pen->colour += n;
     l->w = w, l->u = u, l->v = v;
-    k->depth += n;
-    k->colour += n;
 #endif
+    move(l, &span->by, 1);
+    return span->left ? ew_run_next(&span->limit, l->w, n) : 0;
 }
 
 /* A piece of a span, of at most EW_LONGEST_RUN pixels. */
-EW_NOINLINE void piece_of_texture(ew_packing *k, const ew_triangle *t, ew_linear *l, int32_t n)
+EW_NOINLINE void piece_of_texture(ew_raster *raster, const ew_triangle *t, int32_t n)
 {
-    enum { AT_ONCE = 16 }; /* pixels of their own before the next look whether a run pays */
-    const int32_t shortest = t->shortest;
-    if (t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_CONSTANT) {
-        fill_textured(k, l->u, l->du, l->v, l->dv, n);
-        return;
-    }
-    if (t->rung == EW_RUNG_TABLE || t->rung == EW_RUNG_EXACT) {
-        textured_pixels(k, l, n);
-        return;
-    }
-    for (;;) {
-        int32_t m = (int32_t)run_length(t, l->w, l->dw, l->align);
-        if (m < shortest && n > 1) {
-            m = smaller(n, AT_ONCE);
-            textured_pixels(k, l, m);
-            n -= m;
-            if (n == 0) return;
-            continue;
-        }
-        if (m > n || n == 1) m = n;
-        run_of_texture(k, l, (uint32_t)m >> 1, m);
-        n -= m;
-        if (n == 0) return;
-        advance(l, (uint32_t)m);
-    }
+    ew_packing *k = &raster->work.packing;
+    ew_span_work *span = &raster->work.now.span;
+    int32_t m = first_run(span, t, n);
+    do {
+        m = is_short(t, span, m) ? pixels_of_texture(k, t, span) : runs_of_texture(k, t, span, m);
+    } while (span->left > 0);
 }
 
 /* ---- everything else ---- */
@@ -239,14 +263,11 @@ EW_NOINLINE void piece_of_texture(ew_packing *k, const ew_triangle *t, ew_linear
 /* A tangent may leave a shade's range: ew_fill_any clamps. */
 static void shade_run(ew_run *run, const ew_triangle *t, const ew_attribute_run *from)
 {
-    enum { DOWN = EW_FRACTION(EW_SHADE_BITS) - 16 };
     for (int i = 0; i < 3; i++) {
-        /* rounds to nearest where fill.c drops the fraction */
-        run->shade[i] = t->shade_origin[i] * 16 + 32768 + EW_ASR((int32_t)from->shade[i], DOWN);
-        run->dshade[i] = EW_ASR((int32_t)from->dshade[i], DOWN);
+        run->shade[i] = (int32_t)ew_light_at(t, from, i);
+        run->dshade[i] = (int32_t)ew_light_step(from, i);
     }
 }
-
 
 static uint64_t texels_of(const ew_triangle *t, uint32_t a)
 {
@@ -339,7 +360,7 @@ EW_NOINLINE int32_t next_of_any(ew_raster *raster, int32_t n)
         return n;
     }
     const int per_pixel = t->rung == EW_RUNG_TABLE || t->rung == EW_RUNG_EXACT;
-    int32_t m = per_pixel ? 1 : (int32_t)run_length(t, l->w, l->dw, l->align);
+    int32_t m = per_pixel ? 1 : (int32_t)ew_run_length(t, l->w, l->dw, l->align, 0);
     m = larger(1, smaller(m, n));
     run_of_any(run, raster, t, l, (uint32_t)m >> 1);
     advance(l, (uint32_t)m);
@@ -351,8 +372,10 @@ static void piece_of_any(ew_raster *raster, int32_t n)
 {
     while (n > 0) {
         const int32_t m = next_of_any(raster, n);
-        make_run(raster, m);
-        ew_fill_any(raster, &raster->work.now.span.fill.any.run, m);
+        if (!ew_loop_fill(raster, m)) {
+            make_run(raster, m);
+            ew_fill_any(raster, &raster->work.now.span.fill.any.run, m);
+        }
         n -= m;
     }
 }
@@ -361,11 +384,15 @@ static void piece_of_any(ew_raster *raster, int32_t n)
 
 /* 1/z is linear: the first pixel's and the last's say whether any in between leaves depth's
  * range. */
-EW_ALWAYS_INLINE int is_plain(const ew_triangle *t, uint32_t w, uint32_t dw, int32_t n)
+EW_ALWAYS_INLINE int stays_in_range(uint32_t w, uint32_t dw, int32_t n)
 {
-    if (t->plain != PLAIN_SOMETIMES) return t->plain;
     uint32_t last = w + dw * (uint32_t)(n - 1);
     return w >= 32768u && w <= INT32_MAX && last >= 32768u && last <= INT32_MAX;
+}
+
+EW_ALWAYS_INLINE int is_plain(const ew_triangle *t, uint32_t w, uint32_t dw, int32_t n)
+{
+    return t->plain != PLAIN_SOMETIMES ? t->plain : stays_in_range(w, dw, n);
 }
 
 /* Makes ready for a piece of a span, of n <= EW_LONGEST_RUN pixels from (x, y) on, that
@@ -378,30 +405,19 @@ EW_NOINLINE int start_piece(ew_raster *raster, int32_t x, int32_t y, int32_t n)
     const int down = (int)smaller(t->w_lead + l->align, 31);
     const uint32_t w = depth_of(l->w, down), dw = depth_step(l->dw, down);
     if (is_plain(t, w, dw, n)) {
-        const size_t offset = (size_t)(y - raster->target.first_row) * raster->target.stride + (size_t)x;
-        ew_packing *k = &raster->work.now.span.fill.packing;
-        EW_KEEP_ORDER(k);
-        packing_init(k, raster, t);
-        k->loop.w = w, k->loop.dw = dw;
-        k->colour = (uint16_t *)raster->target.colour + offset;
-        k->depth = raster->target.depth + offset;
-        k->x = (uint16_t)x, k->y = (uint16_t)y;
+        ew_pen *pen = &raster->work.now.span.fill.pen;
+        pen->w = w, pen->dw = dw;
+        pen_at(pen, raster, x, y);
         return 1;
     }
     ew_position *at = &raster->work.now.span.fill.any.position;
     at->x = (uint16_t)x, at->y = (uint16_t)y;
     at->w = w, at->dw = dw;
+    if (EW_HAS_LOOPS) {
+        at->loop = raster->loop > LOOP_TEXTURED && stays_in_range(w, dw, n) ? raster->loop : LOOP_NONE;
+        if (at->loop) ew_loop_start(raster, (uint32_t)y);
+    }
     return 0;
-}
-
-/* w', u and v at x on the current row. */
-EW_ALWAYS_INLINE void narrow_start(ew_linear *l, const ew_triangle *t, int32_t x)
-{
-    const ew_plane32 *p = t->plane.narrow;
-    uint32_t columns = (uint32_t)(x - t->column);
-    l->w = p[EW_PLANE_W].row + l->dw * columns;
-    l->u = p[EW_PLANE_U].row + l->du * columns;
-    l->v = p[EW_PLANE_V].row + l->dv * columns;
 }
 
 /* work.linear from x on. */
@@ -409,6 +425,7 @@ EW_NOINLINE void start_narrow(ew_raster *raster, int32_t x)
 {
     const ew_triangle *t = &raster->work.triangle;
     const ew_plane32 *p = &t->plane.narrow[EW_PLANE_SHADE];
+    const uint32_t columns = (uint32_t)(x - t->column);
     ew_linear *l = &raster->work.now.span.linear;
     EW_KEEP_ORDER(t);
     EW_KEEP_ORDER(l);
@@ -416,10 +433,12 @@ EW_NOINLINE void start_narrow(ew_raster *raster, int32_t x)
     l->dw = t->plane.narrow[EW_PLANE_W].dx;
     l->du = t->plane.narrow[EW_PLANE_U].dx;
     l->dv = t->plane.narrow[EW_PLANE_V].dx;
-    narrow_start(l, t, x);
+    l->w = t->plane.narrow[EW_PLANE_W].row + l->dw * columns;
+    l->u = t->plane.narrow[EW_PLANE_U].row + l->du * columns;
+    l->v = t->plane.narrow[EW_PLANE_V].row + l->dv * columns;
     if (t->attributes == 0) l->u = l->du = l->v = l->dv = 0;
     for (int i = 0; i < t->attributes - 2; i++) {
-        l->shade[i] = p[i].row + p[i].dx * (uint32_t)(x - t->column);
+        l->shade[i] = p[i].row + p[i].dx * columns;
         l->dshade[i] = p[i].dx;
     }
 }
@@ -448,6 +467,8 @@ EW_NOINLINE void wide_start(ew_linear *l, const ew_triangle *t, int32_t x)
 {
     const ew_plane64 *p = t->plane.wide;
     x -= t->column;
+    l->align = 0;
+    l->dw = top_of(p[EW_PLANE_W].dx, 0), l->du = top_of(p[EW_PLANE_U].dx, 0), l->dv = top_of(p[EW_PLANE_V].dx, 0);
     l->w = top_of(p[EW_PLANE_W].row + ew_wrap_mul64(p[EW_PLANE_W].dx, x), 0);
     l->u = top_of(p[EW_PLANE_U].row + ew_wrap_mul64(p[EW_PLANE_U].dx, x), 0);
     l->v = top_of(p[EW_PLANE_V].row + ew_wrap_mul64(p[EW_PLANE_V].dx, x), 0);
@@ -511,89 +532,69 @@ EW_ALWAYS_INLINE void planes_step(ew_triangle *t, int wide, int attributes)
     for (int i = EW_PLANE_SHADE; i <= attributes; i++) p[i].row += p[i].dy;
 }
 
-/* Steps along rows, which stay as they are. */
-EW_ALWAYS_INLINE void steps_start(ew_packing *k, ew_linear *s, const ew_triangle *t, int wide)
+/* A span that has to be cut, or whose runs have to be found. */
+EW_NOINLINE void span_of_texture(ew_raster *raster, const ew_triangle *t, int32_t x, int32_t y, int32_t n)
 {
-    s->align = 0;
-    s->dw = wide ? top_of(t->plane.wide[EW_PLANE_W].dx, 0) : t->plane.narrow[EW_PLANE_W].dx;
-    s->du = wide ? top_of(t->plane.wide[EW_PLANE_U].dx, 0) : t->plane.narrow[EW_PLANE_U].dx;
-    s->dv = wide ? top_of(t->plane.wide[EW_PLANE_V].dx, 0) : t->plane.narrow[EW_PLANE_V].dx;
-    k->loop.dw = depth_step(s->dw, t->w_lead);
+    ew_linear *l = &raster->work.now.span.linear;
+    ew_pen *pen = &raster->work.now.span.fill.pen;
+    EW_KEEP_ORDER(l);
+    pen_at(pen, raster, x, y);
+    while (n > 0) {
+        int32_t m = n;
+        if (t->is_wide && !steps_suffice(t, l->w, l->w + l->dw * (uint32_t)(n - 1), n)) m = next_of_wide(raster, t, x, n);
+        const int down = (int)smaller(t->w_lead + l->align, 31);
+        pen->w = depth_of(l->w, down), pen->dw = depth_step(l->dw, down);
+        piece_of_texture(raster, t, m);
+        x += m;
+        n -= m;
+        if (n > 0) wide_start(l, t, x);
+    }
 }
 
-/* work.linear and the packing's 1/z for the next piece of a span that is too long for steps of
- * 32 bits. Returns its length. */
-EW_NOINLINE int32_t next_of_texture(ew_raster *raster, const ew_triangle *t, int32_t x, int32_t n)
+EW_HOT int ew_rows_of_texture(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
 {
-    const ew_linear *l = &raster->work.now.span.linear;
-    ew_packing *k = &raster->work.now.span.fill.packing;
-    n = next_of_wide(raster, t, x, n);
-    const int down = t->w_lead + l->align;
-    k->loop.w = depth_of(l->w, down), k->loop.dw = depth_step(l->dw, down);
-    return n;
-}
-
-/* Triangles with a texture, depth and nothing else, on the affine rung or in runs: ew_walk_rows
- * for the common case. */
-EW_ALWAYS_INLINE int rows_of_texture(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end, int wide)
-{
-    const int32_t clip_left = raster->scissor.x0, clip_right = raster->scissor.x1;
-    const size_t offset = (size_t)(row - raster->target.first_row) * raster->target.stride;
-    uint16_t *colour = (uint16_t *)raster->target.colour + offset, *depth = raster->target.depth + offset;
-    ew_edge l = edge[0], r = edge[1]; /* or they would be read and written around each span */
-    ew_span_work *span = &raster->work.now.span;
+    ew_plane32 *p = t->plane.narrow;
+    ew_linear *l = &raster->work.now.span.linear;
     int reached = 0;
-    EW_KEEP_ORDER(span); /* a base of its own, with short offsets from it */
-    ew_linear *s = &span->linear;
-    ew_packing *k = &span->fill.packing;
-    packing_init(k, raster, t);
-    steps_start(k, s, t, wide);
+    EW_KEEP_ORDER(l);
     for (; row < end; row++) {
-        int32_t x = larger(l.x, clip_left), n = smaller(r.x, clip_right) - x;
+        const int32_t x = larger(edge[0].x, raster->scissor.x0), n = smaller(edge[1].x, raster->scissor.x1) - x;
         if (n > 0) {
-            int whole = 1;
-            k->colour = colour + x;
-            k->depth = depth + x;
-#if EW_TRACE
-            k->x = (uint16_t)x, k->y = (uint16_t)row;
-#endif
-            if (wide) {
-                wide_start(s, t, x);
-                whole = steps_suffice(t, s->w, s->w + s->dw * (uint32_t)(n - 1), n);
+            uint32_t w, dw, u, du, v, dv;
+            if (t->is_wide) {
+                wide_start(l, t, x);
+                w = l->w, dw = l->dw, u = l->u, du = l->du, v = l->v, dv = l->dv;
             } else {
-                narrow_start(s, t, x);
+                const uint32_t columns = (uint32_t)(x - t->column);
+                dw = p[EW_PLANE_W].dx, du = p[EW_PLANE_U].dx, dv = p[EW_PLANE_V].dx;
+                w = p[EW_PLANE_W].row + dw * columns;
+                u = p[EW_PLANE_U].row + du * columns;
+                v = p[EW_PLANE_V].row + dv * columns;
             }
-            k->loop.w = depth_of(s->w, t->w_lead);
-            if (!whole) {
-                while (n > 0) {
-                    const int32_t m = next_of_texture(raster, t, x, n);
-                    piece_of_texture(k, t, s, m);
-                    x += m;
-                    n -= m;
-                }
-                steps_start(k, s, t, wide);
-            } else if (t->rung == EW_RUNG_AFFINE) fill_textured(k, s->u, s->du, s->v, s->dv, n);
-            else if (one_run_suffices(t, s->w, s->dw, n)) run_of_texture(k, s, (uint32_t)n >> 1, n);
-            else piece_of_texture(k, t, s, n);
+            if (n <= t->sure_run) {
+                ew_pen pen; /* in registers */
+                pen_at(&pen, raster, x, row);
+                pen.w = depth_of(w, t->w_lead), pen.dw = depth_step(dw, t->w_lead);
+                if (t->rung != EW_RUNG_AFFINE) tangent(t, w, dw, &u, &du, &v, &dv, n);
+                fill_pixels(&raster->work.packing, t, &pen, u, du, v, dv, n);
+            } else {
+                l->w = w, l->dw = dw, l->u = u, l->du = du, l->v = v, l->dv = dv;
+                l->align = 0;
+                span_of_texture(raster, t, x, row, n);
+            }
             reached = 1;
         }
-        ew_edge_step(&l);
-        ew_edge_step(&r);
-        planes_step(t, wide, 2);
-        colour += raster->target.stride;
-        depth += raster->target.stride;
+        if (t->is_wide) {
+            planes_step(t, 1, 2);
+        } else {
+            p[EW_PLANE_W].row += p[EW_PLANE_W].dy;
+            p[EW_PLANE_U].row += p[EW_PLANE_U].dy;
+            p[EW_PLANE_V].row += p[EW_PLANE_V].dy;
+        }
+        ew_edge_step(&edge[0]);
+        ew_edge_step(&edge[1]);
     }
-    edge[0].x = l.x, edge[0].remainder = l.remainder;
-    edge[1].x = r.x, edge[1].remainder = r.remainder;
     return reached;
-}
-EW_NOINLINE int rows_of_narrow(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
-{
-    return rows_of_texture(raster, t, edge, row, end, 0);
-}
-EW_NOINLINE int rows_of_wide(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
-{
-    return rows_of_texture(raster, t, edge, row, end, 1);
 }
 
 static void span_of_any(ew_raster *raster, int32_t x, int32_t y, int32_t n)
@@ -604,7 +605,7 @@ static void span_of_any(ew_raster *raster, int32_t x, int32_t y, int32_t n)
         if (t->is_wide) m = next_of_wide(raster, t, x, n);
         else start_narrow(raster, x);
         if (start_piece(raster, x, y, m)) {
-            piece_of_texture(&raster->work.now.span.fill.packing, t, &raster->work.now.span.linear, m);
+            piece_of_texture(raster, t, m);
         } else {
             piece_of_any(raster, m);
         }
@@ -613,7 +614,7 @@ static void span_of_any(ew_raster *raster, int32_t x, int32_t y, int32_t n)
     }
 }
 
-EW_NOINLINE int rows_of_any(ew_raster *raster, int32_t row, int32_t end)
+EW_HOT int ew_rows_of_any(ew_raster *raster, int32_t row, int32_t end)
 {
     ew_triangle *t = &raster->work.triangle;
     ew_edge *edge = raster->work.edge;
@@ -629,10 +630,4 @@ EW_NOINLINE int rows_of_any(ew_raster *raster, int32_t row, int32_t end)
         planes_step(t, t->is_wide, t->attributes);
     }
     return reached;
-}
-
-int ew_walk_rows(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
-{
-    if (!t->is_quick) return rows_of_any(raster, row, end);
-    return t->is_wide ? rows_of_wide(raster, t, edge, row, end) : rows_of_narrow(raster, t, edge, row, end);
 }

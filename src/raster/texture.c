@@ -13,7 +13,7 @@
 
 static uint8_t log2_bits_of(int format)
 {
-    static const uint8_t log2_bits[] = { 4, 3, 3, 3, 2, 0 };
+    static const uint8_t log2_bits[] EW_HOT_TABLE = { 4, 3, 3, 3, 2, 0 };
     return EW_WITH_TEXTURE_FORMATS ? log2_bits[format] : 4;
 }
 
@@ -21,22 +21,32 @@ static int is_power_of_two(uint32_t n) { return !(n & (n - 1u)); }
 
 static int is_size(uint32_t size) { return size >= 1 && size <= EW_TEXTURE_MAX; }
 
-int ew_texture_check(const ew_texture *t, int filter, int flags)
+int ew_texture_check_stored(const ew_texture *t, int flags)
 {
     if (!t->texels || !is_size(t->width) || !is_size(t->height) || t->format > EW_TEXTURE_PALETTE1 ||
-        t->wrap_u > EW_WRAP_MIRROR || t->wrap_v > EW_WRAP_MIRROR ||
-        t->levels > 32 - ew_clz32((uint32_t)t->width | t->height) ||
         (t->format >= EW_TEXTURE_PALETTE8 && (!t->palette || !ew_is_aligned16(t->palette))) ||
         (t->format == EW_TEXTURE_RGB565 && !ew_is_aligned16(t->texels)) || ((flags & EW_ALPHA_MASK) && !t->mask)) {
         return EW_ERR_ARGUMENT;
     }
-    if ((!EW_WITH_TEXTURE_FORMATS && t->format) || (!EW_WITH_MIPS && t->levels > 1) ||
-        (!EW_WITH_WRAPS && (t->wrap_u || t->wrap_v || !is_power_of_two(t->width) || !is_power_of_two(t->height))) ||
-        (!EW_WITH_BILINEAR && filter) || (!EW_WITH_MIPS && filter == EW_FILTER_TRILINEAR) ||
-        (!EW_WITH_CUTOUTS && (flags & (EW_COLOUR_KEY | EW_ALPHA_MASK)))) {
+    if ((!EW_WITH_TEXTURE_FORMATS && t->format) || (!EW_WITH_CUTOUTS && (flags & (EW_COLOUR_KEY | EW_ALPHA_MASK)))) {
         return EW_ERR_UNSUPPORTED;
     }
     return EW_OK;
+}
+
+int ew_texture_check(const ew_texture *t, int filter, int flags)
+{
+    const int error = ew_texture_check_stored(t, flags);
+    if (error == EW_ERR_ARGUMENT || t->wrap_u > EW_WRAP_MIRROR || t->wrap_v > EW_WRAP_MIRROR ||
+        t->levels > 32 - ew_clz32((uint32_t)t->width | t->height)) {
+        return EW_ERR_ARGUMENT;
+    }
+    if ((!EW_WITH_MIPS && t->levels > 1) ||
+        (!EW_WITH_WRAPS && (t->wrap_u || t->wrap_v || !is_power_of_two(t->width) || !is_power_of_two(t->height))) ||
+        (!EW_WITH_BILINEAR && filter) || (!EW_WITH_MIPS && filter == EW_FILTER_TRILINEAR)) {
+        return EW_ERR_UNSUPPORTED;
+    }
+    return error;
 }
 
 uint32_t ew_texture_inverse(uint32_t size)
@@ -56,7 +66,7 @@ static uint32_t period_of(uint32_t size, int wrap)
 static uint64_t with_whole(uint64_t u, uint32_t whole) { return (uint64_t)whole << 32 | (uint32_t)(u & 0xFFFFFFFFu); }
 
 /* The whole part of a position modulo the period. */
-static uint32_t within_period(uint32_t whole, uint32_t size, int wrap, uint32_t inverse)
+static EW_HOT uint32_t within_period(uint32_t whole, uint32_t size, int wrap, uint32_t inverse)
 {
     const uint32_t period = period_of(size, wrap);
     uint32_t r;
@@ -121,7 +131,7 @@ static uint32_t clamp(uint32_t i, uint32_t size)
 }
 
 /* The texel of the position, or the one `next` behind it, 0 or 1. */
-static uint32_t texel_index(const ew_axis *a, uint32_t next)
+EW_NOINLINE uint32_t texel_index(const ew_axis *a, uint32_t next)
 {
     uint32_t i = (uint32_t)(a->at >> 32) + next;
     if (EW_WITH_WRAPS && !a->period) return clamp(i, a->size);
@@ -151,7 +161,7 @@ static uint32_t larger(uint32_t a, uint32_t b) { return a > b ? a : b; }
 
 /* The logarithm of the larger of the lengths of (du/dx, dv/dx) and (du/dy, dv/dy), by
  * OpenGL 2.1, 3.8.8: rho and lambda; half the logarithm of the length's square. */
-uint32_t ew_texture_level(const ew_run *run)
+EW_HOT uint32_t ew_texture_level(const ew_run *run)
 {
     uint32_t ux = magnitude(run->du), vx = magnitude(run->dv), uy = magnitude(run->u_down), vy = magnitude(run->v_down);
     int shift = 17 - ew_clz32(larger(larger(ux, vx), larger(uy, vy)));
@@ -172,7 +182,7 @@ uint32_t ew_texture_level(const ew_run *run)
 
 static uint32_t row_bytes_of(uint32_t width, int log2_bits) { return ((width << log2_bits) + 7u) >> 3; }
 
-static void find_level(ew_sampler *s, uint32_t level)
+static EW_HOT void find_level(ew_sampler *s, uint32_t level)
 {
     uint32_t width = s->texture->width, height = s->texture->height;
     s->texels = s->texture->texels;
@@ -195,17 +205,17 @@ static uint32_t stored(const ew_sampler *s, uint32_t column, uint32_t row)
     return ew_packed_get(line, column, s->log2_bits);
 }
 
-EW_NOINLINE void fetch(ew_sampler *s, uint32_t column, uint32_t row)
+EW_NOINLINE void fetch(const ew_sampler *s, uint32_t column, uint32_t row, uint16_t colour[3])
 {
     const ew_texture *t = s->texture;
     uint32_t value = stored(s, column, row);
     switch (EW_WITH_TEXTURE_FORMATS ? t->format : EW_TEXTURE_RGB565) {
     case EW_TEXTURE_RGB565: break;
-    case EW_TEXTURE_RGB332: ew_decode_332(s->texel, value); return;
-    case EW_TEXTURE_GREY8: ew_decode_grey(s->texel, value); return;
+    case EW_TEXTURE_RGB332: ew_decode_332(colour, value); return;
+    case EW_TEXTURE_GREY8: ew_decode_grey(colour, value); return;
     default: value = t->palette[value]; break;
     }
-    ew_decode_565(s->texel, value, s->wide);
+    ew_decode_565(colour, value, s->wide);
 }
 
 /* Whether a texel is left out. */
@@ -213,6 +223,23 @@ EW_NOINLINE int is_cut(const ew_sampler *s, uint32_t column, uint32_t row)
 {
     if ((s->cuts & EW_ALPHA_MASK) && !ew_packed_get(s->mask + (size_t)row * s->mask_row_bytes, column, 0)) return 1;
     return (s->cuts & EW_COLOUR_KEY) && stored(s, column, row) == s->texture->key;
+}
+
+void ew_texture_open(ew_sampler *s, const ew_texture *texture, int cuts, uint8_t wide)
+{
+    s->texture = texture;
+    s->log2_bits = log2_bits_of(texture->format);
+    s->wide = wide;
+    s->cuts = (uint8_t)cuts;
+    s->mask = EW_WITH_CUTOUTS && (cuts & EW_ALPHA_MASK) ? texture->mask : NULL;
+    find_level(s, 0);
+}
+
+EW_HOT int ew_texture_texel(const ew_sampler *s, uint32_t column, uint32_t row, uint16_t colour[3])
+{
+    if (EW_WITH_CUTOUTS && s->cuts && is_cut(s, column, row)) return 0;
+    fetch(s, column, row, colour);
+    return 1;
 }
 
 #if EW_WITH_BILINEAR
@@ -225,14 +252,20 @@ EW_NOINLINE void weigh(ew_sampler *s, uint32_t fu, uint32_t fv)
     s->weight[1] = (uint8_t)(fu - both);
     s->weight[2] = (uint8_t)(fv - both);
     s->weight[3] = (uint8_t)both;
-    s->sum[0] = s->sum[1] = s->sum[2] = 0;
 }
 
-/* Adds one of the four. */
-EW_NOINLINE void add_texel(ew_sampler *s, uint32_t k)
+/* Their sum, at most 32 * 4095, and from it the pixel's colour. */
+EW_NOINLINE void add_texels(ew_sampler *s, uint16_t colour[3])
 {
-    fetch(s, texel_index(&s->u, k & 1u), texel_index(&s->v, k >> 1));
-    for (int j = 0; j < 3; j++) s->sum[j] += (uint32_t)s->weight[k] * s->texel[j]; /* <= 32 * 4095 */
+    const uint32_t column[2] = { texel_index(&s->u, 0), texel_index(&s->u, 1) };
+    uint32_t row = texel_index(&s->v, 0), r = 0, g = 0, b = 0;
+    for (int k = 0; k < 4; k++) {
+        const uint32_t weight = s->weight[k];
+        if (k == 2) row = texel_index(&s->v, 1);
+        fetch(s, column[k & 1], row, s->texel);
+        r += weight * s->texel[0], g += weight * s->texel[1], b += weight * s->texel[2];
+    }
+    colour[0] = (uint16_t)(r >> 5), colour[1] = (uint16_t)(g >> 5), colour[2] = (uint16_t)(b >> 5);
 }
 #endif
 
@@ -253,31 +286,23 @@ EW_NOINLINE void start_level(ew_sampler *s, const ew_raster *raster, const ew_ru
     axis_start(&s->v, s->level, t->wrap_v, raster->inverse_height, back);
 }
 
-/* The pixel's colour into s->texel. */
-static void sample_pixel(ew_sampler *s, uint32_t fu, uint32_t fv, uint32_t column, uint32_t row)
+static void sample_pixel(ew_sampler *s, uint32_t fu, uint32_t fv, uint32_t column, uint32_t row, uint16_t colour[3])
 {
 #if EW_WITH_BILINEAR
     if (fu | fv) {
         weigh(s, fu, fv);
-        for (uint32_t k = 0; k < 4; k++) add_texel(s, k);
-        for (int j = 0; j < 3; j++) s->texel[j] = (uint16_t)(s->sum[j] >> 5);
+        add_texels(s, colour);
         return;
     }
 #else
     (void)fu, (void)fv;
 #endif
-    fetch(s, column, row);
+    fetch(s, column, row, colour);
 }
 
-EW_NOINLINE void store(const ew_sampler *s, uint16_t colour[3])
+EW_HOT void ew_texture_sample(ew_sampler *s, ew_piece *piece)
 {
-    for (int k = 0; k < 3; k++) {
-        colour[k] = EW_WITH_MIPS && s->share < 256 ? ew_mix256(colour[k], s->texel[k], s->share) : s->texel[k];
-    }
-}
-
-void ew_texture_sample(ew_sampler *s, ew_piece *piece)
-{
+    const int second = EW_WITH_MIPS && s->share < 256;
     for (int i = 0; i < piece->n; i++) {
         if (piece->live >> i & 1) {
             const uint32_t fu = s->smooth ? (uint32_t)(s->u.at >> 27 & 31u) : 0, fv = s->smooth ? (uint32_t)(s->v.at >> 27 & 31u) : 0;
@@ -286,8 +311,9 @@ void ew_texture_sample(ew_sampler *s, ew_piece *piece)
             if (EW_WITH_CUTOUTS && s->cuts && is_cut(s, column, row)) {
                 piece->live = (uint8_t)(piece->live & ~(1u << i));
             } else {
-                sample_pixel(s, fu, fv, column, row);
-                store(s, piece->colour[i]);
+                uint16_t *colour = piece->colour[i];
+                sample_pixel(s, fu, fv, column, row, second ? s->level_colour : colour);
+                for (int k = 0; second && k < 3; k++) colour[k] = ew_mix256(colour[k], s->level_colour[k], s->share);
             }
         }
         axis_step(&s->u);
@@ -300,7 +326,7 @@ static uint8_t cuts_of(const ew_raster *raster)
     return EW_WITH_CUTOUTS ? raster->material.flags & (EW_COLOUR_KEY | EW_ALPHA_MASK) : 0;
 }
 
-void ew_texture_start(ew_sampler *s, const ew_raster *raster, const ew_run *run)
+EW_HOT void ew_texture_start(ew_sampler *s, const ew_raster *raster, const ew_run *run)
 {
     s->level = s->next_share = 0;
 #if EW_WITH_MIPS
@@ -321,7 +347,7 @@ void ew_texture_start(ew_sampler *s, const ew_raster *raster, const ew_run *run)
     start_level(s, raster, run);
 }
 
-int ew_texture_next(ew_sampler *s, const ew_raster *raster, const ew_run *run)
+EW_HOT int ew_texture_next(ew_sampler *s, const ew_raster *raster, const ew_run *run)
 {
     if (!EW_WITH_MIPS || !s->next_share) return 0;
     s->level++;

@@ -21,7 +21,7 @@ int ew_raster_triangle(ew_raster *raster, const ew_raster_vertex *a, const ew_ra
 }
 
 /* Starts one side's edge on `row`. */
-EW_NOINLINE void start_edge(ew_raster *raster, uint8_t side, uint8_t from, uint8_t to, int32_t row)
+static EW_OWN_FRAME void start_edge(ew_raster *raster, uint8_t side, uint8_t from, uint8_t to, int32_t row)
 {
     const ew_corners *c = &raster->work.corners;
     ew_edge_start(&raster->work.edge[side], c->x[from], c->y[from], c->x[to], c->y[to], row);
@@ -45,7 +45,7 @@ static void order(ew_corners *c)
 
 /* Fills in work.corners. Returns 0 for a triangle that faces away, has no area or covers no
  * pixel centre inside the scissor, whose last row is here the one above `end`. */
-EW_NOINLINE int place(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *c,
+static EW_OWN_FRAME int place(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *c,
                       int32_t end)
 {
     ew_corners *corners = &raster->work.corners;
@@ -66,6 +66,7 @@ EW_NOINLINE int place(ew_raster *raster, const ew_raster_vertex *a, const ew_ras
     const int32_t bottom = ew_row_at(larger(sy[0], larger(sy[1], sy[2])));
     const int32_t left = ew_row_at(smaller(sx[0], smaller(sx[1], sx[2])));
     const int32_t right = ew_row_at(larger(sx[0], larger(sx[1], sx[2])));
+    corners->x0 = left, corners->y0 = top;
     corners->steps = bottom - top + right - left;
     corners->first = larger(top, clip->y0);
     corners->end = smaller(bottom, end);
@@ -90,11 +91,16 @@ static int set_up(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_
     return 1;
 }
 
+/* Rows of work.triangle between two changes of edges. */
+EW_ALWAYS_INLINE int draw_some(ew_raster *raster, int32_t row, int32_t end)
+{
+    ew_triangle *t = &raster->work.triangle;
+    return t->is_quick ? ew_rows_of_texture(raster, t, raster->work.edge, row, end) : ew_rows_of_any(raster, row, end);
+}
+
 /* Draws the rows of work.triangle above `end`. */
 EW_ALWAYS_INLINE int draw_rows(ew_raster *raster, int32_t end)
 {
-    ew_triangle *t = &raster->work.triangle;
-    ew_edge *edge = raster->work.edge;
     const ew_corners *k = &raster->work.corners;
     EW_KEEP_ORDER(k);
     const int32_t turn = smaller(k->turn, end);
@@ -102,11 +108,11 @@ EW_ALWAYS_INLINE int draw_rows(ew_raster *raster, int32_t end)
     start_edge(raster, k->longest, k->top, k->bottom, k->first);
     if (k->first < turn) {
         start_edge(raster, !k->longest, k->top, k->middle, k->first);
-        reached |= ew_walk_rows(raster, t, edge, k->first, turn);
+        reached |= draw_some(raster, k->first, turn);
     }
     if (turn < end) {
         start_edge(raster, !k->longest, k->middle, k->bottom, turn);
-        reached |= ew_walk_rows(raster, t, edge, turn, end);
+        reached |= draw_some(raster, turn, end);
     }
     return reached;
 }
@@ -215,9 +221,9 @@ EW_NOINLINE int draw_part(ew_raster *raster, ew_active *active, int32_t end)
     const int32_t row = active->row;
     active->row = (uint16_t)end;
     if (row == active->turn) start_lowest_edge(active);
-    if (active->triangle.is_quick) return ew_walk_rows(raster, &active->triangle, active->edge, row, end);
+    if (active->triangle.is_quick) return ew_rows_of_texture(raster, &active->triangle, active->edge, row, end);
     copy_to_work(raster, active);
-    const int reached = ew_walk_rows(raster, &raster->work.triangle, raster->work.edge, row, end);
+    const int reached = ew_rows_of_any(raster, row, end);
     copy_from_work(active, raster);
     return reached;
 }
@@ -228,7 +234,7 @@ int ew_raster_draw_active(ew_raster *raster, ew_active *active)
     if (row >= end) return 0;
     if (active->triangle.is_quick && (row > turn || end <= turn)) {
         active->row = (uint16_t)end;
-        return ew_walk_rows(raster, &active->triangle, active->edge, row, end);
+        return ew_rows_of_texture(raster, &active->triangle, active->edge, row, end);
     }
     int reached = 0;
     if (row < turn && turn < end) reached = draw_part(raster, active, turn);

@@ -19,17 +19,21 @@ enum {
 };
 #define EW_FRACTION(bits) (39 - (bits))
 
-/* Whether fill_textured (span.c) may draw a triangle's spans: never, for its material or
+/* Whether fill_pixels (span.c) may draw a triangle's spans: never, for its material or
  * target; where 1/z at the span's ends stays inside depth's range; or everywhere. */
 enum { PLAIN_NEVER, PLAIN_SOMETIMES, PLAIN_ALWAYS };
+
+/* What the loop of span.c needs to know of raster->texture. */
+void ew_packing_init(ew_packing *packing, const ew_raster *raster);
 
 /* Rungs, planes and shifts of work.triangle; planes stand on work.corners.first. Returns EW_OK
  * or EW_ERR_RANGE. */
 int ew_setup(ew_raster *raster);
 
-/* Draws rows from `row` to below `end` of a triangle whose edges and planes stand on `row`, cut to
- * the scissor in x, and steps both. Unless it is quick, t and edge are those of raster->work.
- * Returns whether a pixel was reached. */
-int ew_walk_rows(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end);
+/* Draw rows from `row` to below `end` of a triangle whose edges and planes stand on `row`, cut to
+ * the scissor in x, and step both. Return whether a pixel was reached. The first is for quick
+ * triangles, the second for all, which must be raster->work's. */
+int ew_rows_of_texture(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end);
+int ew_rows_of_any(ew_raster *raster, int32_t row, int32_t end);
 
 #endif

@@ -93,7 +93,6 @@ static int range_ok(uint32_t first, uint32_t count, uint32_t all)
     return first <= all && count <= all - first;
 }
 
-
 static const uint8_t *record(const ew_scene *s, int section, uint32_t i)
 {
     return s->section[section].records + (size_t)i * rules[section].record_bytes;
@@ -116,14 +115,30 @@ static int node_ok(const ew_scene *s, uint32_t i)
            range_ok(u16_at(p + 4), u16_at(p + 6), s->section[EW_SECTION_PRIM].count) && rows_ok(p + 8, 3);
 }
 
+/* Where the range of indices may begin that primitive i names, and that of keys of track i: behind
+ * the range of the record before, which has been checked. So no index and no key is looked at
+ * twice, and the checks take time in proportion to the file's size. */
+static uint32_t least_index(const ew_scene *s, uint32_t i)
+{
+    if (i == 0) return 0;
+    const uint8_t *before = record(s, EW_SECTION_PRIM, i - 1);
+    return u32_at(before + 8) + u32_at(before + 12);
+}
+static uint32_t least_key(const ew_scene *s, uint32_t i)
+{
+    if (i == 0) return 0;
+    const uint8_t *before = record(s, EW_SECTION_TRAK, i - 1);
+    return u32_at(before) + u16_at(before + 4);
+}
+
 static int primitive_ok(const ew_scene *s, uint32_t i)
 {
     const uint8_t *p = record(s, EW_SECTION_PRIM, i);
     uint32_t vertices = u16_at(p + 4), first_index = u32_at(p + 8), indices = u32_at(p + 12);
     if (vertices < 1 || !range_ok(u32_at(p), vertices, s->section[EW_SECTION_VERT].count) ||
         u16_at(p + 6) >= s->section[EW_SECTION_MATL].count || indices % 3 != 0 ||
-        !range_ok(first_index, indices, s->section[EW_SECTION_INDX].count) || !row_ok(p + 16) ||
-        p[36] < 1 || p[36] > 12 || p[37] || p[38] || p[39]) {
+        first_index < least_index(s, i) || !range_ok(first_index, indices, s->section[EW_SECTION_INDX].count) ||
+        !row_ok(p + 16) || p[36] < 1 || p[36] > 12 || p[37] || p[38] || p[39]) {
         return 0;
     }
     for (uint32_t k = 0; k < indices; k++) {
@@ -154,7 +169,8 @@ static int track_ok(const ew_scene *s, uint32_t i)
     const uint8_t *p = record(s, EW_SECTION_TRAK, i);
     int16_t et = i16_at(p + 8), es = i16_at(p + 10);
     return u16_at(p + 4) >= 1 && u16_at(p + 6) >= 1 && et >= -1000 && et <= 1000 && es >= -1000 &&
-           es <= 1000 && range_ok(u32_at(p), u16_at(p + 4), s->section[EW_SECTION_KEYS].count);
+           es <= 1000 && u32_at(p) >= least_key(s, i) &&
+           range_ok(u32_at(p), u16_at(p + 4), s->section[EW_SECTION_KEYS].count);
 }
 
 /* The dot product of two keys' quaternions in units of 2^-26: |.| <= 2^30. */

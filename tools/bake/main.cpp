@@ -159,7 +159,8 @@ void print_text(const Report &r)
                 b.nodes.size(), b.primitives.size(), b.vertices.size(), b.indices.size() / 3,
                 b.materials.size(), b.textures.size());
     if (s.empty_nodes != 0)
-        std::printf("  left out: %zu nodes with nothing to draw in or below them\n", s.empty_nodes);
+        std::printf("  left out: %zu of the model's nodes, with no mesh in or below them (a camera's view is kept)\n",
+                    s.empty_nodes);
     if (s.flat_triangles != 0)
         std::printf("  left out: %zu triangles that cover nothing\n", s.flat_triangles);
     std::printf("  sections:");

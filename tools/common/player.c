@@ -192,7 +192,6 @@ int ew_player_draw(ew_player *p, unsigned i, unsigned n, double fps)
 }
 
 const uint16_t *ew_player_pixels(const ew_player *p) { return p->target.colour; }
-const uint16_t *ew_player_depth(const ew_player *p) { return p->target.depth; }
 const ew_scene *ew_player_scene(const ew_player *p) { return &p->scene; }
 const ew_scene_camera *ew_player_camera(const ew_player *p) { return &p->camera; }
 uint32_t ew_player_time_ms(const ew_player *p) { return p->time_ms; }

@@ -22,9 +22,8 @@ int ew_player_use_bands(ew_player *player, unsigned rows, unsigned active);
  * counts as 30), else the camera goes round the scene once in n frames. 0 or -1. */
 int ew_player_draw(ew_player *player, unsigned i, unsigned n, double fps);
 
-/* The picture, width * height, rows without gaps; and its depth. */
+/* The picture, width * height, rows without gaps. */
 const uint16_t *ew_player_pixels(const ew_player *player);
-const uint16_t *ew_player_depth(const ew_player *player);
 
 /* For checks of the picture: the scene, what the last frame was drawn with, and the number
  * of triangles that reached a pixel. */

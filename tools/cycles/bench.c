@@ -1,5 +1,5 @@
 /* What is counted: transform, culling, set-up and spans of each scene (posing its nodes, where it
- * is a baked one), once for each case of cases.h. The same file is firmware and host program; both
+ * is a baked one), once for each case of cases.h, then of scenes A and D with each fill. The same file is firmware and host program; both
  * print the hash of every picture, which is the same on all targets.
  *
  * On the host: `bench --list` names the cases and says how many fragments each scene has, when
@@ -21,6 +21,7 @@ static ew_mat34 world[BENCH_MOST_NODES];
 static ew_raster raster;
 static ew_geometry geometry;
 static ew_scene scene;
+static ew_colour888 colours[BENCH_MOST_COLOURS]; /* of the standard scenes' vertices */
 
 /* ---- in less memory ---- */
 
@@ -69,10 +70,10 @@ static int32_t draw_mode(const bench_scene *s, const ew_material *material)
 __attribute__((noinline, noclone)) int32_t bench_draw(const bench_scene *s, const ew_material *material);
 __attribute__((noinline, noclone)) void bench_end(void);
 
-static int32_t draw_mesh(const ew_vertex16 *vertices, uint32_t vertex_count, const uint16_t *indices,
-                         uint32_t index_count, uint8_t uv_fraction_bits)
+static int32_t draw_mesh(const ew_vertex16 *vertices, uint32_t vertex_count, const ew_colour888 *colours_of,
+                         const uint16_t *indices, uint32_t index_count, uint8_t uv_fraction_bits)
 {
-    const ew_mesh mesh = { vertices, screen, NULL, indices, index_count, uv_fraction_bits };
+    const ew_mesh mesh = { vertices, screen, colours_of, indices, index_count, uv_fraction_bits };
     ew_transform_vertices(&geometry.transform, vertices, vertex_count, screen);
     return ew_draw_triangles(&geometry, &mesh);
 }
@@ -93,7 +94,7 @@ static int32_t draw_primitive(uint32_t number, const ew_projection *projection, 
     if (!error) error = ew_raster_set_material(&raster, &material);
     if (!error) error = ew_transform_set(&geometry.transform, projection, &model_view, &whole);
     if (error) return error;
-    return draw_mesh(p.vertices, p.vertex_count, p.indices, p.index_count, p.uv_fraction_bits);
+    return draw_mesh(p.vertices, p.vertex_count, NULL, p.indices, p.index_count, p.uv_fraction_bits);
 }
 
 static int32_t draw_baked(const ew_material *method)
@@ -119,7 +120,7 @@ int32_t bench_draw(const bench_scene *s, const ew_material *material)
 {
     if (mode) return draw_mode(s, material);
     if (s->file) return draw_baked(material);
-    return draw_mesh(s->vertices, s->vertex_count, s->indices, s->index_count, 4);
+    return draw_mesh(s->vertices, s->vertex_count, colours, s->indices, s->index_count, 4);
 }
 void bench_end(void) { __asm__ volatile(""); }
 
@@ -139,14 +140,11 @@ static void print_hash(uint32_t h)
 }
 
 /* Returns 0, or 1 when the scene cannot be drawn. */
-static int run(const bench_scene *s, const bench_method *method, uint16_t tolerance)
+static int run(const bench_scene *s, const ew_target *target, const ew_material *material)
 {
-    const ew_target target = { .colour = colour, .depth = depth, .width = W, .height = H, .stride = W };
-    const ew_texture texture = { .texels = bench_texture, .width = 256, .height = 256 };
-    const ew_material material = { .texture = &texture, .tolerance = tolerance, .rung = method->rung };
-    int error = ew_raster_init(&raster, &target);
+    int error = ew_raster_init(&raster, target);
     ew_raster_clear(&raster, BACKGROUND);
-    if (!error) error = ew_raster_set_material(&raster, &material);
+    if (!error) error = ew_raster_set_material(&raster, material);
     ew_geometry_init(&geometry, &raster);
     if (!error) error = bench_view(&geometry.transform, W);
     if (!error && s->file) {
@@ -156,7 +154,7 @@ static int run(const bench_scene *s, const bench_method *method, uint16_t tolera
             error = EW_ERR_RANGE;
         }
     }
-    if (!error) error = bench_draw(s, &material) < 0;
+    if (!error) error = bench_draw(s, material) < 0;
     bench_end();
     if (error) bench_line("cannot draw a scene\n");
     else print_hash(hash(START, colour, depth, W * H));
@@ -225,13 +223,48 @@ static int run_mode(const bench_scene *s, const bench_mode *m)
     return error != 0;
 }
 
+static int run_method(const bench_scene *s, const bench_method *method, uint16_t tolerance)
+{
+    const ew_target target = { .colour = colour, .depth = depth, .width = W, .height = H, .stride = W };
+    const ew_texture texture = { .texels = bench_texture, .width = 256, .height = 256 };
+    const ew_material material = { .texture = &texture, .tolerance = tolerance, .rung = method->rung };
+    return run(s, &target, &material);
+}
+
+/* Scenes that fills are counted on: the number-th, 0 behind the last. */
+static const bench_scene *fill_scene(int number)
+{
+    static const uint8_t scenes[] = { 0, 3 }; /* A, D */
+    return number < (int)sizeof scenes ? &bench_scenes[scenes[number]] : NULL;
+}
+
+static int run_fill(const bench_scene *s, const bench_fill *fill)
+{
+    const ew_target target = { .colour = colour, .depth = depth, .width = W, .height = H, .stride = W,
+                               .format = fill->format, .dither = fill->format > EW_TARGET_RGB565_SWAPPED };
+    const ew_texture texture = { .texels = bench_texture, .width = 256, .height = 256, .key = bench_texture[0],
+                                 .wrap_u = fill->wrap, .wrap_v = fill->wrap };
+    const ew_material material = { .texture = fill->textured ? &texture : NULL, .colour = 0xA5B4, .tolerance = BENCH_FILL_TOLERANCE,
+                                   .flags = fill->flags, .blend = fill->blend, .filter = fill->filter };
+    for (uint32_t i = 0; i < BENCH_MOST_COLOURS; i++) {
+        colours[i] = (ew_colour888){ (uint8_t)(128 + i % 120), (uint8_t)(255 - i % 77), (uint8_t)(160 + i % 31) };
+    }
+    return run(s, &target, &material);
+}
+
 static int run_all(void)
 {
     const bench_method *method;
     uint16_t tolerance;
     for (int s = 0; s < bench_scene_count; s++) {
         for (int i = 0; bench_case(i, &method, &tolerance); i++) {
-            if (run(&bench_scenes[s], method, tolerance)) return 1;
+            if (run_method(&bench_scenes[s], method, tolerance)) return 1;
+        }
+    }
+    const bench_scene *of_fills;
+    for (int s = 0; (of_fills = fill_scene(s)); s++) {
+        for (int i = 0; i < BENCH_FILLS; i++) {
+            if (run_fill(of_fills, &bench_fills[i])) return 1;
         }
     }
     for (int s = 0; s < bench_scene_count; s++) {
@@ -274,10 +307,18 @@ static int list(void)
         for (int i = 0; bench_case(i, &method, &tolerance); i++) {
             if (i == 0) {
                 fragments = 0;
-                if (run(&bench_scenes[s], method, tolerance)) return 1;
+                if (run_method(&bench_scenes[s], method, tolerance)) return 1;
                 of_scene[s] = fragments;
             }
             printf("%s,%s,%g,%ld\n", bench_scenes[s].name, method->name, tolerance / 16.0, fragments);
+        }
+    }
+    const bench_scene *of_fills;
+    for (int s = 0; (of_fills = fill_scene(s)); s++) {
+        for (int i = 0; i < BENCH_FILLS; i++) {
+            fragments = 0;
+            if (run_fill(of_fills, &bench_fills[i])) return 1;
+            printf("%s,%s,%g,%ld\n", of_fills->name, bench_fills[i].name, BENCH_FILL_TOLERANCE / 16.0, fragments);
         }
     }
     for (int s = 0; s < bench_scene_count && s < 16; s++) {

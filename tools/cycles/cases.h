@@ -49,6 +49,30 @@ static const bench_mode bench_modes[] = {
     { "at-once", 240 }, { "bands-32", 32 }, { "bands-16", 16 }, { "bands-8", 8 }, { "bands-4", 4 }, { "line", 1 },
 };
 enum { BENCH_MODES = sizeof bench_modes / sizeof *bench_modes, BENCH_MODE_TOLERANCE = 4 };
+/* Fills that are counted besides, on the rung that is chosen for 1/4 px: every loop of
+ * src/raster/loops.c, then some that go through the generic path. */
+typedef struct bench_fill {
+    const char *name;
+    uint8_t textured;
+    uint8_t flags, blend, filter; /* of the material                                        */
+    uint8_t wrap;                 /* of u and v                                             */
+    uint8_t format;               /* of the target, dithered but for RGB565                 */
+} bench_fill;
+
+static const bench_fill bench_fills[] = {
+    { "flat", 0, 0, 0, 0, 0, 0 },
+    { "gouraud", 0, EW_SHADED, 0, 0, 0, 0 },
+    { "no-depth", 1, EW_NO_DEPTH_TEST | EW_NO_DEPTH_WRITE, 0, 0, 0, 0 },
+    { "keyed", 1, EW_COLOUR_KEY, 0, 0, 0, 0 },
+    { "lit", 1, EW_SHADED, 0, 0, 0, 0 },
+    { "bilinear", 1, 0, 0, EW_FILTER_BILINEAR, 0, 0 },
+    { "grey4", 1, 0, 0, 0, 0, EW_TARGET_GREY4 },
+    { "clamped", 1, 0, 0, 0, EW_WRAP_CLAMP, 0 },
+    { "half", 1, 0, EW_BLEND_HALF, 0, 0, 0 },
+    { "lit-bilinear", 1, EW_SHADED, 0, EW_FILTER_BILINEAR, 0, 0 },
+    { "swapped", 1, 0, 0, 0, 0, EW_TARGET_RGB565_SWAPPED },
+};
+enum { BENCH_FILLS = sizeof bench_fills / sizeof *bench_fills, BENCH_FILL_TOLERANCE = 4 };
 
 /* Of baked scenes, whose camera is used as it is. */
 enum { BENCH_WIDTH = 320, BENCH_HEIGHT = 240, BENCH_TIME_MS = 1000 };

@@ -196,7 +196,7 @@ def print_table(cases, counts):
         several = {method for method, tolerance in rows if tolerance != "0"}
         for (method, tolerance), row in rows.items():
             name = f"{target} {method}" + (f" {tolerance} px" if method in several else "")
-            print(f"{name:28s}" + "".join(f"{row[scene]:>16s}" for scene in scenes))
+            print(f"{name:28s}" + "".join(f"{row.get(scene, ''):>16s}" for scene in scenes))
     print("instructions, and in brackets modelled cycles (typical)")
 
 

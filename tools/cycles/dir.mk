@@ -15,7 +15,7 @@ freestanding := -ffreestanding -ffunction-sections
 # the emulated ones are those of examples/firmware/board/boards.mk
 bench_cc = $(if $(filter host,$(1)),$(CC) $(bench_flags),$(cc_$(1)) $(bench_flags) $(freestanding))
 
-$(C)/scene_data: tools/cycles/scene_data.c host_tests/reference/scenes.c fixed/matrix.c fixed/arithmetic.c fixed/recip.c
+$(C)/scene_data: $(B)/tools/cycles/scene_data.o $(B)/host_tests/reference/scenes.o $(LIB)
 	@mkdir -p $(@D)
 	$(CC) $(HOST_CFLAGS) -o $@ $^ -lm
 $(C)/scene_data.c: $(C)/scene_data $(COUNT_FILES)
@@ -26,8 +26,8 @@ $(C)/count.so: tools/cycles/count.c
 
 # $(C)/BITS/bench-TARGET; the scenes' data is compiled once for each target
 define bench_target
-$(C)/data-$(1).o: $(C)/scene_data.c tools/cycles/scene_data.h
-	@mkdir -p $$(@D); echo "CC $$@"; $$(call bench_cc,$(1)) -Iinclude -Itools/cycles -c -o $$@ $$<
+$(C)/data-$(1).o: $(C)/scene_data.c
+	@mkdir -p $$(@D); echo "CC $$@"; $$(call bench_cc,$(1)) $$(DEPFLAGS) -Iinclude -Itools/cycles -c -o $$@ $$<
 $(C)/%/bench-$(1): $(CYCLES_DEPS) $(C)/data-$(1).o $(board_$(1)) $(wildcard $(BOARD)/*.ld $(BOARD)/*.h)
 	@mkdir -p $$(@D); echo "CC $$@"
 	@$$(call bench_cc,$(1)) -DEW_RECIP_BITS=$$* -Iinclude -o $$@ $$(filter %.c %.S %.o,$$^) $$(link_$(1))

@@ -19,7 +19,7 @@ extern const int bench_scene_count;
 extern const uint16_t bench_texture[256 * 256];
 
 /* Of the largest scene. */
-enum { BENCH_MOST_VERTICES = 8192, BENCH_MOST_NODES = 256 };
+enum { BENCH_MOST_VERTICES = 8192, BENCH_MOST_NODES = 256, BENCH_MOST_COLOURS = 33 * 33 };
 
 /* The standard camera (host_tests/reference/scenes.h) for a picture of `width` x 3/4 width: a
  * square of which the middle is seen. */

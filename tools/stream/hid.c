@@ -24,16 +24,15 @@ static int failed(ew_hid *hid, int code, const char *format, ...)
 }
 
 /* The first interface that answers to the name, as a path of hidapi's own; or NULL. */
-static char *find_path(const ew_hid *hid, unsigned short *vendor, unsigned short *product)
+static char *find_path(const ew_hid_name *name, unsigned short *vendor, unsigned short *product)
 {
-    struct hid_device_info *all = hid_enumerate(hid->path ? 0 : hid->vendor, hid->path ? 0 : hid->product),
-                           *i;
+    struct hid_device_info *all = hid_enumerate(name->vendor, name->product), *i; /* 0: any */
     char *path = NULL;
 
     for (i = all; i && !path; i = i->next) {
-        int same = hid->path
-                       ? !strcmp(hid->path, i->path)
-                       : !hid->serial[0] || (i->serial_number && !wcscmp(hid->serial, i->serial_number));
+        int same = name->path ? !strcmp(name->path, i->path)
+                              : !name->serial[0] ||
+                                    (i->serial_number && !wcscmp(name->serial, i->serial_number));
         if (same) {
             path = strdup(i->path);
             *vendor = i->vendor_id;
@@ -63,9 +62,9 @@ static int hid_driver_open(ew_display_driver *driver)
     if (hid_init()) {
         return failed(hid, EW_DRIVER_FAILED, "open: hidapi cannot be started");
     }
-    path = find_path(hid, &vendor, &product);
+    path = find_path(&hid->name, &vendor, &product);
     if (!path) {
-        if (hid->path && !access(hid->path, F_OK)) {
+        if (hid->name.path && !access(hid->name.path, F_OK)) {
             return failed(hid, EW_DRIVER_FAILED, "open: not a HID device that hidapi can reach by path");
         }
         return failed(hid, EW_DRIVER_ABSENT, "open: no such display");
@@ -155,25 +154,31 @@ static int parse_id(const char *text, unsigned short *id)
     return 0;
 }
 
-int ew_hid_init(ew_hid *hid, const char *name)
+int ew_hid_parse_name(ew_hid_name *name, const char *text)
+{
+    memset(name, 0, sizeof *name);
+    if (text[0] == '/') {
+        name->path = text;
+        return 0;
+    }
+    if (parse_id(text, &name->vendor) || text[4] != ':' || parse_id(text + 5, &name->product)) {
+        return -1;
+    }
+    if (text[9] == ':' && text[10]) {
+        size_t n = mbstowcs(name->serial, text + 10, sizeof name->serial / sizeof *name->serial);
+        return n < sizeof name->serial / sizeof *name->serial ? 0 : -1;
+    }
+    return text[9] ? -1 : 0;
+}
+
+void ew_hid_init(ew_hid *hid, const ew_hid_name *name)
 {
     static const ew_display_driver driver = {hid_driver_open,        hid_driver_write_report,
                                              hid_driver_read_report, hid_driver_get_feature,
                                              hid_driver_close,       hid_driver_error};
     memset(hid, 0, sizeof *hid);
     hid->driver = driver;
-    if (name[0] == '/') {
-        hid->path = name;
-        return 0;
-    }
-    if (parse_id(name, &hid->vendor) || name[4] != ':' || parse_id(name + 5, &hid->product)) {
-        return -1;
-    }
-    if (name[9] == ':' && name[10]) {
-        size_t n = mbstowcs(hid->serial, name + 10, sizeof hid->serial / sizeof *hid->serial);
-        return n < sizeof hid->serial / sizeof *hid->serial ? 0 : -1;
-    }
-    return name[9] ? -1 : 0;
+    hid->name = *name;
 }
 
 int ew_hid_list(FILE *out, char *why, size_t size)

@@ -7,18 +7,25 @@
 
 #include "display_driver.h"
 
+typedef struct ew_hid_name {
+    const char *path; /* as given, or NULL for vendor, product and serial     */
+    unsigned short vendor, product;
+    wchar_t serial[128]; /* empty: any                                           */
+} ew_hid_name;
+
 typedef struct ew_hid {
     ew_display_driver driver; /* first: the driver is cast to this struct             */
     void *device;             /* hid_device, NULL when closed                         */
-    const char *path;         /* as given, or NULL for vendor, product and serial     */
-    unsigned short vendor, product;
-    wchar_t serial[128]; /* empty: any                                           */
+    ew_hid_name name;
     char error[384];
 } ew_hid;
 
-/* Parses `name`, which must outlive the driver. Returns 0, or -1 when it is neither
- * form. Opens nothing. */
-int ew_hid_init(ew_hid *hid, const char *name);
+/* Takes `text`, which must outlive the name, apart. Returns 0, or -1 when it is of none
+ * of the forms. */
+int ew_hid_parse_name(ew_hid_name *name, const char *text);
+
+/* Opens nothing. */
+void ew_hid_init(ew_hid *hid, const ew_hid_name *name);
 
 /* Prints every HID device that says it is a display, or (where the back end cannot
  * tell) every HID device. Returns their number, or -1 after writing `why`. */

@@ -5,34 +5,34 @@
 
 #include "clock.h"
 
-/* Splits CHIP:LINE at its last colon. */
-static int split(const char *text, char *chip, char *line, size_t size)
+int ew_line_name_parse(ew_line_name *name, const char *text)
 {
     const char *colon = strrchr(text, ':');
     size_t n = colon ? (size_t)(colon - text) : 0;
 
-    if (!n || n >= size || !colon[1] || strlen(colon + 1) >= size) {
+    if (!n || n >= sizeof name->chip || !colon[1] || strlen(colon + 1) >= sizeof name->line) {
         return -1;
     }
-    memcpy(chip, text, n);
-    chip[n] = '\0';
-    memcpy(line, colon + 1, strlen(colon + 1) + 1);
+    memcpy(name->chip, text, n);
+    name->chip[n] = '\0';
+    memcpy(name->line, colon + 1, strlen(colon + 1) + 1);
     return 0;
 }
 
 static int open_line(const ew_gpio_backend *gpio, const char *text, ew_gpio_use use, ew_gpio_line **line,
                      char *error, size_t size)
 {
-    char chip[128], name[128], why[256];
+    ew_line_name name;
+    char why[256];
 
     if (!text) {
         return 0;
     }
-    if (split(text, chip, name, sizeof chip)) {
+    if (ew_line_name_parse(&name, text)) {
         snprintf(error, size, "%s: not of the form CHIP:LINE", text);
         return -1;
     }
-    *line = gpio->open(chip, name, use, why, sizeof why);
+    *line = gpio->open(name.chip, name.line, use, why, sizeof why);
     if (!*line) {
         snprintf(error, size, "%s: %s", text, why);
         return -1;

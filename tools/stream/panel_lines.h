@@ -20,6 +20,14 @@ typedef struct ew_panel_lines {
     unsigned long te_edges, te_misses;
 } ew_panel_lines;
 
+/* CHIP:LINE, split at its last colon. */
+typedef struct ew_line_name {
+    char chip[128], line[128];
+} ew_line_name;
+
+/* Returns 0, or -1 when `text` is not of that form. */
+int ew_line_name_parse(ew_line_name *name, const char *text);
+
 /* Requests the lines given as CHIP:LINE; NULL for none. The reset line is driven high.
  * Returns 0, or -1 with `what: why` in `error` and nothing held. */
 int ew_panel_lines_open(ew_panel_lines *lines, const ew_gpio_backend *gpio, const char *reset, const char *te,

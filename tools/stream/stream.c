@@ -76,20 +76,16 @@ static int list(void)
     return 0;
 }
 
-static int choose_driver(stream *s)
+static void choose_driver(stream *s)
 {
     const ew_stream_options *o = &s->options;
     if (o->is_sim) {
         ew_sim_init(&s->device.sim, o->sim_width, o->sim_height, o->profile, o->fault_drop);
         s->driver = &s->device.sim.driver;
-        return 0;
+    } else {
+        ew_hid_init(&s->device.hid, &o->hid_name);
+        s->driver = &s->device.hid.driver;
     }
-    if (ew_hid_init(&s->device.hid, o->device)) {
-        return complain(o->device,
-                        "device: neither sim:WxH, nor VID:PID or VID:PID:SERIAL in hex, nor a path");
-    }
-    s->driver = &s->device.hid.driver;
-    return 0;
 }
 
 static int open_lines(stream *s)
@@ -303,7 +299,8 @@ static int stream_all(stream *s)
 {
     int failed;
 
-    if (choose_driver(s) || ew_whole_file_open(&s->record, ew_stream_tool, s->options.record)) {
+    choose_driver(s);
+    if (ew_whole_file_open(&s->record, ew_stream_tool, s->options.record)) {
         return -1;
     }
     failed = open_lines(s);
@@ -334,9 +331,7 @@ int main(int argc, char **argv)
     struct sigaction action;
 
     setlocale(LC_CTYPE, ""); /* serial numbers */
-    if (ew_stream_parse_options(&s.options, argc, argv)) {
-        return EXIT_FAILURE;
-    }
+    ew_stream_parse_options(&s.options, argc, argv);
     if (s.options.list) {
         return list() ? EXIT_FAILURE : EXIT_SUCCESS;
     }

@@ -5,6 +5,7 @@
 
 #include "edgewalk/edgewalk.h"
 
+#include "panel_lines.h"
 #include "tools/common/options.h"
 
 const char ew_stream_tool[] = "ew-stream";
@@ -89,18 +90,38 @@ static unsigned parse_word(struct argp_state *state, const char *name, const cha
     return 0;
 }
 
-static int parse_size_or_say(const char *thing, const char *text, unsigned *width, unsigned *height)
+/* `text` ends with the size. */
+static void parse_size(struct argp_state *state, const char *name, const char *text, const char *size,
+                       unsigned *width, unsigned *height)
 {
-    if (ew_parse_size(text, width, height)) {
-        fprintf(stderr, "%s: %s: size: not WxH with 1 to 4096 pixels on each side\n", ew_stream_tool, thing);
-        return -1;
+    if (ew_parse_size(size, width, height)) {
+        argp_error(state, "--%s %s: size: not WxH with 1 to 4096 pixels on each side", name, text);
     }
-    return 0;
+}
+
+static void parse_device(struct argp_state *state, ew_stream_options *o, const char *text)
+{
+    o->device = text;
+    o->is_sim = !strncmp(text, "sim:", 4);
+    if (o->is_sim) {
+        parse_size(state, "device", text, text + 4, &o->sim_width, &o->sim_height);
+    } else if (ew_hid_parse_name(&o->hid_name, text)) {
+        argp_error(state,
+                   "--device %s: neither sim:WxH, nor VID:PID or VID:PID:SERIAL in hex, nor a path", text);
+    }
+}
+
+static const char *parse_line(struct argp_state *state, const char *name, const char *text)
+{
+    ew_line_name line;
+    if (ew_line_name_parse(&line, text)) {
+        argp_error(state, "--%s %s: not of the form CHIP:LINE", name, text);
+    }
+    return text;
 }
 
 static void check_usage(const ew_stream_options *o, struct argp_state *state)
 {
-    int is_sim = o->device && !strncmp(o->device, "sim:", 4);
     if (o->list) {
         return;
     }
@@ -110,14 +131,13 @@ static void check_usage(const ew_stream_options *o, struct argp_state *state)
     if (!o->raw == !o->scene) {
         argp_error(state, o->raw ? "a scene and --raw exclude each other" : "the scene is missing");
     }
-    if (!is_sim && (o->out || o->fault_drop || o->profile != EW_HID_BUFFERED)) {
+    if (!o->is_sim && (o->out || o->fault_drop || o->profile != EW_HID_BUFFERED)) {
         argp_error(state, "--out, --fault-drop and --profile need a simulated display (--device sim:WxH)");
     }
 }
 
 typedef struct parse {
     ew_stream_options *options;
-    const char *raw_size;
     int frames_given, fps_given;
 } parse;
 
@@ -129,7 +149,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
     ew_stream_options *o = p->options;
 
     switch (key) {
-    case 'd': o->device = text; break;
+    case 'd': parse_device(state, o, text); break;
     case 'n':
         o->frames = parse_number(state, "frames", text, 1000000000);
         p->frames_given = 1;
@@ -138,7 +158,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
     case OPT_LIST: o->list = 1; break;
     case OPT_RAW:
         o->raw = 1;
-        p->raw_size = text;
+        parse_size(state, "raw", text, text, &o->raw_width, &o->raw_height);
         break;
     case OPT_FPS:
         o->fps = parse_decimal(state, "fps", text, 1000);
@@ -152,8 +172,8 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
     case OPT_RECONNECT:
         o->reconnect_ms = (unsigned)(1000 * parse_decimal(state, "reconnect", text, 86400));
         break;
-    case OPT_GPIO_RESET: o->gpio_reset = text; break;
-    case OPT_GPIO_TE: o->gpio_te = text; break;
+    case OPT_GPIO_RESET: o->gpio_reset = parse_line(state, "gpio-reset", text); break;
+    case OPT_GPIO_TE: o->gpio_te = parse_line(state, "gpio-te", text); break;
     case OPT_TE_TIMEOUT: o->te_timeout_ms = parse_number(state, "te-timeout", text, 3600000); break;
     case OPT_PROFILE: o->profile = (ew_hid_profile)parse_word(state, "profile", text, profiles); break;
     case OPT_FAULT_DROP: o->fault_drop = parse_number(state, "fault-drop", text, 1000000000); break;
@@ -172,7 +192,7 @@ static error_t parse_option(int key, char *text, struct argp_state *state)
     return 0;
 }
 
-int ew_stream_parse_options(ew_stream_options *options, int argc, char **argv)
+void ew_stream_parse_options(ew_stream_options *options, int argc, char **argv)
 {
     static const struct argp argp = {
         option_list,
@@ -185,7 +205,7 @@ int ew_stream_parse_options(ew_stream_options *options, int argc, char **argv)
         NULL,
         NULL};
     static char name[] = "ew-stream";
-    parse p = {options, NULL, 0, 0};
+    parse p = {options, 0, 0};
 
     if (argc > 0) {
         argv[0] = name; /* getopt's words begin with it, whatever path was typed */
@@ -198,20 +218,10 @@ int ew_stream_parse_options(ew_stream_options *options, int argc, char **argv)
     options->timeout_ms = 3000;
     argp_err_exit_status = 2;
     argp_parse(&argp, argc, argv, 0, NULL, &p);
-    if (options->list) {
-        return 0;
-    }
     if (options->raw && !p.frames_given) {
         options->frames = 0;
     }
     if (options->gpio_te && !p.fps_given) {
         options->fps = 0;
     }
-    if (p.raw_size && parse_size_or_say(p.raw_size, p.raw_size, &options->raw_width, &options->raw_height)) {
-        return -1;
-    }
-    options->is_sim = !strncmp(options->device, "sim:", 4);
-    return options->is_sim ? parse_size_or_say(options->device, options->device + 4, &options->sim_width,
-                                               &options->sim_height)
-                           : 0;
 }

@@ -4,13 +4,16 @@
 
 #include "edgewalk/display.h"
 
+#include "hid.h"
+
 extern const char ew_stream_tool[]; /* "ew-stream", the first word of every error line */
 
 typedef struct ew_stream_options {
     const char *scene; /* NULL with raw frames on stdin                          */
     const char *device;
     int is_sim;
-    unsigned sim_width, sim_height;
+    unsigned sim_width, sim_height; /* of a simulated display                           */
+    ew_hid_name hid_name;           /* of any other                                     */
     ew_hid_profile profile;
     unsigned fault_drop;
     int raw;
@@ -26,7 +29,7 @@ typedef struct ew_stream_options {
 } ew_stream_options;
 
 /* Fills `options` or ends the program: status 2 after wrong usage, 0 after --help and
- * --version. Returns 0, or -1 after an error line about a value. */
-int ew_stream_parse_options(ew_stream_options *options, int argc, char **argv);
+ * --version. */
+void ew_stream_parse_options(ew_stream_options *options, int argc, char **argv);
 
 #endif

@@ -10,7 +10,7 @@ arm = arm-none-eabi-gcc -mthumb -mfloat-abi=soft -mcpu=$(1)
 memory = -T $(BOARD)/m.ld -Wl,--defsym=_flash=$(1),--defsym=_flash_bytes=$(2),--defsym=_ram=$(3),--defsym=_ram_bytes=$(4) \
   -nostdlib -Wl,--gc-sections -Wl,--no-warn-rwx-segments -lgcc
 
-ARM_TARGETS := microbit lm3s6965evb m0plus m3 m4 m7 m33 m55
+ARM_TARGETS := microbit lm3s6965evb m0plus m3 m3_hot m4 m7 m33 m55
 cc_microbit = $(call arm,cortex-m0)
 cc_lm3s6965evb = $(call arm,cortex-m3)
 cc_m0plus = $(call arm,cortex-m0plus)
@@ -23,6 +23,9 @@ link_microbit = $(call memory,0,0x40000,0x20000000,0x4000)
 link_lm3s6965evb = $(call memory,0,0x40000,0x20000000,0x10000)
 link_m3 = $(call memory,0,0x400000,0x20000000,0x400000)
 link_m0plus = $(link_m3)
+# the same with rows, pixels and their tables in RAM
+cc_m3_hot = $(cc_m3) '-DEW_HOT=__attribute__((section(".ew_hot")))' '-DEW_HOT_TABLE=__attribute__((section(".ew_hot_table")))'
+link_m3_hot = $(link_m3)
 link_m4 = $(link_m3)
 link_m7 = $(link_m3)
 link_m33 = $(call memory,0x10000000,0x400000,0x38000000,0x200000)

@@ -1,0 +1,85 @@
+/* How long runs may be (private to the raster layer). docs/error-bound.md has the bound. */
+#ifndef EW_RASTER_RUN_H
+#define EW_RASTER_RUN_H
+
+#include "arch.h"
+#include "triangle.h"
+
+/* 16 sqrt(q), for q = product 2^exponent, from below: in each octave the chord of the root,
+ * at most 2.2 % short. 16 EW_LONGEST_RUN at most. */
+EW_ALWAYS_INLINE uint32_t ew_root16(uint32_t product, int exponent)
+{
+    if (product == 0) return 0;
+    int zeros = ew_clz32(product);
+    uint32_t m = (product << zeros) >> 16; /* 2^15 to 2^16 */
+    exponent += 31 - zeros;
+    if (exponent >= 26) return 16 * EW_LONGEST_RUN;
+    if (exponent < 0) return 0;
+    /* 2^15 sqrt(m / 2^15), or sqrt 2 times that: (2 - sqrt 2) + (sqrt 2 - 1) x, times sqrt 2 */
+    uint32_t root = exponent & 1 ? 27145u + (m * 19194u >> 15) : 19195u + (m * 13572u >> 15);
+    return root >> (15 - (exponent >> 1));
+}
+
+/* The longest run that the bound allows from a pixel with 1/z = w: N^2 |dw| <= 4 t w at its
+ * far end, so with q = 4 t w / |dw|, N = sqrt q where w grows along the run and
+ * sqrt(q + 4 t^2) - 2 t where it falls. Twice within a run is as far as w may grow or fall,
+ * for the run's slope to be a number of 32 bits: N <= w / |dw| = q / 4 t. `twice` doubles t. */
+EW_ALWAYS_INLINE uint32_t ew_run_length(const ew_triangle *t, uint32_t w, uint32_t dw, int align, int twice)
+{
+    const uint32_t tolerance = (uint32_t)t->run_tolerance << twice;
+    uint32_t n16 = ew_root16((w >> 15) * t->run_scale, t->run_exponent - align + twice);
+    if ((int32_t)dw < 0) n16 = n16 > 2u * tolerance ? n16 - 2u * tolerance : 0;
+    uint32_t n = n16 >> 4;
+    if (4u * n < tolerance) n = 4u * n * n / tolerance;
+    return n < t->longest ? n : t->longest;
+}
+
+/* Whether a span of n pixels, at most EW_LONGEST_RUN, may be one run; as in ew_run_length, but
+ * exact in the square. */
+EW_ALWAYS_INLINE int ew_one_run_suffices(const ew_triangle *t, uint32_t w, uint32_t dw, int align, int32_t n)
+{
+    /* the tangent's far end is the mirrored first pixel: one beyond the last where n is even */
+    int32_t there = (int32_t)(w + dw * (uint32_t)n), far_end = (int32_t)w < there ? (int32_t)w : there;
+    int down = t->run_shift + align;
+    return t->rung == EW_RUNG_RUNS && n <= t->longest && far_end > 0 && 4u * (uint32_t)n >= t->run_tolerance &&
+           (uint32_t)(n * n) << 8 <= ((uint32_t)far_end >> 15) * t->run_scale >> (down < 31 ? down : 31);
+}
+
+/* ---- run after run ---- */
+
+/* 1/z is linear along a piece of a span: a run's length is found from that of the one before
+ * it, with what stays the same. */
+EW_ALWAYS_INLINE void ew_run_limit_init(ew_run_limit *limit, const ew_triangle *t, uint32_t dw, int align, int twice)
+{
+    const int tolerance = (int)t->run_tolerance << twice, down = align - twice - t->run_exponent;
+    limit->scale = t->run_scale;
+    limit->fall = (int32_t)dw < 0 ? (uint32_t)tolerance : 0;
+    limit->longest = t->longest;
+    limit->shortest = (tolerance + 3) / 4;
+    limit->down = down < 0 ? 0 : down > 31 ? 31 : down; /* w' has bits enough for 256 px at 0 */
+}
+
+/* n^2 <= q, or q - 4 t n where w falls; in 1/256. */
+EW_ALWAYS_INLINE int ew_run_fits(const ew_run_limit *limit, uint32_t q, int32_t n)
+{
+    return (uint32_t)n * (4u * (uint32_t)n + limit->fall) << 6 <= q; /* 2^24 at most */
+}
+
+/* The longest run from a pixel with 1/z = w on, where the one before it had n pixels. */
+EW_ALWAYS_INLINE int32_t ew_run_next(const ew_run_limit *limit, uint32_t w, int32_t n)
+{
+    const uint32_t q = (w >> 15) * limit->scale >> limit->down;
+    while (n < limit->longest && ew_run_fits(limit, q, n + 1)) n++;
+    while (!ew_run_fits(limit, q, n)) n--;
+    return n < limit->shortest ? 0 : n;
+}
+
+EW_ALWAYS_INLINE int32_t ew_run_first(const ew_run_limit *limit, uint32_t w)
+{
+    uint32_t n16 = ew_root16((w >> 15) * limit->scale, -limit->down);
+    n16 = n16 > 2u * limit->fall ? n16 - 2u * limit->fall : 0;
+    int32_t n = (int32_t)(n16 >> 4);
+    return ew_run_next(limit, w, n < limit->longest ? n : limit->longest);
+}
+
+#endif
