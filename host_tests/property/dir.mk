@@ -12,7 +12,7 @@ $(T)/test_coverage $(T)/test_meshes: $(T)/test_%: $(PROPERTY)/test_%.o $(CASES) 
 	$(LINK_TEST)
 $(T)/test_coverage_hits: $(PROPERTY)/test_coverage_hits.o $(CASES) $(B)/host_tests/reference/coverage.o $(TRACE_OBJS)
 	$(LINK_TEST)
-$(T)/test_displacement: $(PROPERTY)/test_displacement.o $(CASES) \
+$(T)/test_displacement: $(PROPERTY)/test_displacement.o $(PROPERTY)/promise.o $(CASES) \
   $(addprefix $(B)/host_tests/reference/,exact.o referee.o scenes.o) $(TRACE_OBJS)
 	$(LINK_TEST)
 $(T)/test_rows $(T)/test_modes: $(T)/test_%: $(PROPERTY)/test_%.o $(PROPERTY)/pictures.o $(CASES) $(LIB)
