@@ -79,7 +79,7 @@ int promise_given(const promise_triangle *t, const exact_forms *at)
 {
     double w = (double)at->w.at, g = t->w_most / w;
     double off = fmax(t->reach, 128) * ldexp(g, -27) + t->reach * ldexp(1 / w, -31);
-    return w >= 1.0 / 65536 && off <= 1.0 / 128;
+    return w >= 1.0 / 65536 && off <= PROMISE_BEYOND;
 }
 
 double promise_limit(const promise_way *way, const promise_triangle *t, const exact_forms *at)

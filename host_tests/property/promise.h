@@ -9,6 +9,7 @@
 
 #define PROMISE_E (1.0 / 64)     /* texel: what is beside the disc                             */
 #define PROMISE_SNAP (1.0 / 256) /* px: the disc's share of the snap                           */
+#define PROMISE_BEYOND (1.0 / 256) /* texel: what the last bits are worth where the promise ends */
 
 typedef struct promise_way {
     const char *name;
