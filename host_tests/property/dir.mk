@@ -17,8 +17,6 @@ $(T)/test_displacement: $(PROPERTY)/test_displacement.o $(PROPERTY)/promise.o $(
 	$(LINK_TEST)
 $(T)/test_rows $(T)/test_modes: $(T)/test_%: $(PROPERTY)/test_%.o $(PROPERTY)/pictures.o $(CASES) $(LIB)
 	$(LINK_TEST) -pthread
-$(T)/test_rows: $(PROPERTY)/test_rows.o $(PROPERTY)/pictures.o $(CASES) $(LIB)
-	$(LINK_TEST)
 
 # The search for the triangle that uses most of its promise, and those that it found.
 WORST_OBJS := $(addprefix $(PROPERTY)/,worst.o promise.o) $(CASES) $(addprefix $(B)/host_tests/reference/,exact.o referee.o) $(TRACE_OBJS)
