@@ -30,8 +30,8 @@ extern ew_raster promise_raster;
 /* Begins a cleared picture of at most PROMISE_PIXELS, drawn with a texture of that size. */
 void promise_picture(uint16_t width, uint16_t height, uint16_t texture_width, uint16_t texture_height);
 
-/* Sets the way's material and forgets what was drawn. */
-void promise_use(const promise_way *way);
+/* Sets the way's material, for the automatic choice one of the four cost profiles, and forgets what was drawn. */
+void promise_use(const promise_way *way, long profile);
 
 typedef struct promise_fragment {
     uint16_t x, y, depth;

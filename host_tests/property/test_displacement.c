@@ -131,7 +131,7 @@ static void draw_and_judge(const ew_raster_vertex v[3], long number)
     snprintf(row, sizeof row, "%s", triangle_row(v));
     for (int k = 0; k < PROMISE_WAYS; k++) {
         if (triangle.reach > promise_ways[k].reach) continue;
-        promise_use(&promise_ways[k]);
+        promise_use(&promise_ways[k], number);
         int result = ew_raster_triangle(&promise_raster, &v[0], &v[1], &v[2]);
         assert_true(result >= 0);
         if (!result) return;
@@ -252,7 +252,7 @@ static int draw_and_judge_mesh(ew_geometry *geometry, const ew_mesh *mesh, const
     int drawn_ways = 0;
     for (int k = 0; k < MESH_WAYS; k++) {
         if (triangle.reach > promise_ways[k].reach) continue;
-        promise_use(&promise_ways[k]);
+        promise_use(&promise_ways[k], number);
         int32_t result = ew_draw_triangles(geometry, mesh);
         assert_true(result >= 0);
         if (result == 0) break;

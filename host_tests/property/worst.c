@@ -44,7 +44,7 @@ worst_verdict worst_judge(const worst_case *c, int part)
     assert_non_null(way);
     if (!exact_corners_init(&corners, c->v) || t.reach > way->reach) return worst;
     promise_picture(c->width, c->height, c->texture_width, c->texture_height);
-    promise_use(way);
+    promise_use(way, 0);
     assert_true(ew_raster_triangle(&promise_raster, &c->v[0], &c->v[1], &c->v[2]) >= 0);
     for (int i = 0; i < promise_count; i += part) judge_fragment(&worst, c, way, &t, &corners, &promise_drawn[i]);
     return worst;

@@ -24,6 +24,8 @@ EMULATORS = {"m0plus": [*ARM, "mps2-an385"], "m3": [*ARM, "mps2-an385"], "m4": [
              "m33": [*ARM, "mps2-an505"], "rv32imc": RISCV}
 TARGETS = ["host", *EMULATORS]
 DEFAULT_BITS = 8
+# The cost profile that is drawn beside the generic one: tools/cycles/dir.mk builds it in
+PROFILES = {"host": "host", "m0plus": "m0plus", "m3": "m3", "m4": "m3", "m33": "m3"}
 
 # One picture: what was drawn and by which method (tolerance in px, a string), the fragments of the scene.
 Case = namedtuple("Case", "scene method tolerance fragments")
@@ -50,7 +52,7 @@ def tools_prefix(target):
 
 
 def list_cases(build):
-    lines = run([os.path.join(build, "list"), "--list"]).split()
+    lines = run([os.path.join(build, "list"), "--list"]).splitlines()
     return [Case(scene, method, tolerance, int(n)) for scene, method, tolerance, n in (line.split(",") for line in lines)]
 
 
@@ -58,6 +60,10 @@ def printed(text):
     """(hash, Memory or None) of each picture that an image prints."""
     lines = re.findall(r"^([0-9a-f]{8})\n(?:memory((?: \d+)+)\n)?", text, re.M)
     return [(picture, Memory(*map(int, figures.split())) if figures else None) for picture, figures in lines]
+
+def cases_of(target, cases):
+    """Those that the target's image draws: of the cost profiles only its own."""
+    return [case for case in cases if not case.method.startswith("auto ") or case.method == f"auto {PROFILES.get(target)}"]
 
 
 # ---- host ----
@@ -133,7 +139,8 @@ def count_emulated(build, bits, target):
 
 
 def count(build, bits, target, cases):
-    """A Count for each case."""
+    """A Count for each of the target's cases."""
+    cases = cases_of(target, cases)
     counts = count_host(build, bits) if target == "host" else count_emulated(build, bits, target)
     if len(counts) != len(cases):
         raise Failed(f"{target}: {len(counts)} counts for {len(cases)} cases")
@@ -157,8 +164,8 @@ def memory_rows(cases, counts):
     """RAM against instructions of every picture in bands; counts: {target: [Count]}."""
     rows = []
     for target, of_target in counts.items():
-        at_once = {case.scene: c.instructions for case, c in zip(cases, of_target) if case.method == "at-once"}
-        for case, c in zip(cases, of_target):
+        at_once = {case.scene: c.instructions for case, c in zip(cases_of(target, cases), of_target) if case.method == "at-once"}
+        for case, c in zip(cases_of(target, cases), of_target):
             if case.method not in MODES:
                 continue
             m, goal, notes = c.memory, goal_bytes(case.method, c.memory), []
@@ -188,7 +195,7 @@ def print_table(cases, counts):
     print(f"{'per fragment':28s}" + "".join(f"{scene:>16s}" for scene in scenes))
     for target, of_target in counts.items():
         rows = {}
-        for case, c in zip(cases, of_target):
+        for case, c in zip(cases_of(target, cases), of_target):
             text = f"{c.instructions / case.fragments:.1f}"
             if c.cycles:
                 text += f" ({c.cycles[1] / case.fragments:.1f})"
@@ -221,7 +228,7 @@ def main():
             out.writerow(["target", "scene", "method", "tolerance_px", "fragments", "instructions", "cycles_low",
                           "cycles_typical", "cycles_high"])
             for target, of_target in counts.items():
-                for case, c in zip(cases, of_target):
+                for case, c in zip(cases_of(target, cases), of_target):
                     out.writerow([target, *case, c.instructions, *(c.cycles or ["na"] * 3)])
     if args.memory:
         write_memory(args.memory, memory_rows(cases, counts))

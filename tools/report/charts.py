@@ -92,7 +92,7 @@ def panel(script, name, title, rows, marks, speed, error, bits):
     ordered = sorted(series(rows, bits).items(), key=lambda item: item[0].startswith(tables.AUTO))
     for method, own in ordered:
         auto = method.startswith(tables.AUTO)
-        style = f"lw 3 pt 7 ps 1.1 lc rgb '{AUTO_COLOUR}'" if auto else f"lw 1.5 pt 6 ps 0.8 lc rgb '{next(colours)}'"
+        style = f"lw {3 if method == tables.AUTO else '1.5 dt 2'} pt 7 ps {1.1 if method == tables.AUTO else 0.7} lc rgb '{AUTO_COLOUR}'" if auto else f"lw 1.5 pt 6 ps 0.8 lc rgb '{next(colours)}'"
         plots.append(f"{script.block(points(own, speed, error))} with linespoints {style} title '{method}'")
     for source, pt, colour in (("prototype", 2, REFERENCE_COLOUR), ("peers", 3, PEER_COLOUR)):
         own = [mark for mark in marks if (mark["source"] == "prototype") == (source == "prototype")]

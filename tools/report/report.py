@@ -44,8 +44,8 @@ def judge(build, bits, scenes):
 
 
 def measure(args, progress):
-    """Rows of speed_accuracy for every size of the table, and of memory for the first."""
-    cases, rows, memory = count.list_cases(args.build), [], []
+    """Rows of speed_accuracy for every size of the table, {size: what was judged}, and rows of memory for the first."""
+    cases, rows, judged, memory = count.list_cases(args.build), [], {}, []
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         names, jobs = {}, {}
         for bits in args.bits:
@@ -62,9 +62,10 @@ def measure(args, progress):
             raise
         for bits in args.bits:
             counts = {target: jobs[bits, target].result() for target in args.targets}
-            rows += tables.speed_accuracy(bits, jobs[bits, "judged"].result(), cases, counts)
+            judged[bits] = jobs[bits, "judged"].result()
+            rows += tables.speed_accuracy(bits, judged[bits], cases, counts)
             memory = memory or count.memory_rows(cases, counts)
-    return rows, memory
+    return rows, judged, memory
 
 
 def draw_pictures(args, bits):
@@ -85,7 +86,7 @@ def main():
     args = parser.parse_args()
     default = count.DEFAULT_BITS if count.DEFAULT_BITS in args.bits else args.bits[-1]
     progress = Progress(len(args.bits) * (len(args.targets) + 1) + 2)
-    rows, memory = measure(args, progress)
+    rows, judged, memory = measure(args, progress)
     auto = list(tables.auto_rows(rows))
     tables.write(os.path.join(args.out, "speed_accuracy.csv"), tables.COLUMNS, rows)
     tables.write(os.path.join(args.out, "cycles.csv"), tables.CYCLE_COLUMNS, tables.cycle_rows(rows))
@@ -98,12 +99,25 @@ def main():
     page.write(args.out, rows, auto, names, differing, default, {target: baseline.versions(target) for target in args.targets})
     progress.step("page")
     progress.end()
-    over = sum(row["state"] == "over" for row in auto)
-    beyond = {(row["recip_bits"], row["scene"], tables.label(row)) for row in rows if row["beyond"]}
-    for bits, scene, label in sorted(beyond):
-        print(f"report: scene {scene}, {label}, table of {bits} bits: displaced beyond its bound")
-    print(f"report: {args.out}/index.html; {len(rows)} rows of speed_accuracy.csv; auto: {len(auto) - over} of {len(auto)} "
-          "as cheap as the cheapest rung, within 5 % of what the bound allows and 10 % of what measures so")
+    say(args.out, rows, judged, auto)
+
+
+def say(out, rows, judged, auto):
+    """What was promised and is not so, a line each, and a summary."""
+    over = [row for row in auto if row["state"] == "over"]
+    for bits, of_size in judged.items():
+        for j in filter(tables.beyond, of_size):
+            print(f"report: beyond its bound: table of {bits} bits, scene {j['scene']}, {j['method']} {j['tolerance_px']}: "
+                  f"{j['disp_max_px']} px, bound {j['bound_px']} px")
+    for row in over:
+        print(f"report: auto is dearer: {row['target']}, table of {row['recip_bits']} bits, scene {row['scene']}, {row['method']} "
+              f"{row['tolerance_px']}: {row['auto_per_px']} {row['metric']}; {row['cheapest_by_bound']} {row['by_bound_per_px']} "
+              f"(by bound, {row['over_by_bound']}), {row['cheapest_measured']} {row['measured_per_px']} (measured, {row['over_measured']})")
+    for name in dict.fromkeys(row["method"] for row in auto):
+        own = [row for row in auto if row["method"] == name]
+        print(f"report: {name}: {sum(row['state'] == 'ok' for row in own)} of {len(own)} as cheap as the cheapest rung, within 5 % of "
+              "what the bound allows and 10 % of what measures so")
+    print(f"report: {out}/index.html; {len(rows)} rows of speed_accuracy.csv")
 
 
 if __name__ == "__main__":
