@@ -89,8 +89,8 @@ def outside_libc(path):
     return total
 
 
-def count_host(build, bits):
-    image, out = (os.path.join(build, str(bits), name) for name in ("bench-host", "callgrind"))
+def count_host(image):
+    out = image + ".callgrind"
     for old in glob.glob(out + ".*"):
         os.unlink(old)
     pictures = printed(run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", "--toggle-collect=bench_draw",
@@ -119,15 +119,15 @@ def regions(path):
     return found
 
 
-def count_emulated(build, bits, target):
-    image, out = (os.path.join(build, str(bits), name) for name in (f"bench-{target}", f"regions-{target}"))
+def count_emulated(image, target, plugin):
+    out = image + ".regions"
     symbols = dict(reversed(line.split()[::2]) for line in run([tools_prefix(target) + "nm", image]).splitlines()
                    if len(line.split()) == 3)
     begin, end = (int(symbols[name], 16) for name in ("bench_draw", "bench_end"))
     # semihosting writes to stderr
     done = subprocess.run([*EMULATORS[target], "-display", "none", "-monitor", "none", "-serial", "none",
                            "-semihosting-config", "enable=on,target=native", "-kernel", image, "-plugin",
-                           f"{os.path.join(build, 'count.so')},begin={begin:#x},end={end:#x},edges=1,out={out}"],
+                           f"{plugin},begin={begin:#x},end={end:#x},edges=1,out={out}"],
                           stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True, check=False)
     if done.returncode != 0:
         raise Failed(f"{EMULATORS[target][0]}: {image}: status {done.returncode}: {done.stderr.strip()[-400:]}")
@@ -138,10 +138,16 @@ def count_emulated(build, bits, target):
     return counts
 
 
+def count_image(build, name, target):
+    """A Count for each region from bench_draw to bench_end of an image."""
+    image = os.path.join(build, name)
+    return count_host(image) if target == "host" else count_emulated(image, target, os.path.join(build, "count.so"))
+
+
 def count(build, bits, target, cases):
     """A Count for each of the target's cases."""
     cases = cases_of(target, cases)
-    counts = count_host(build, bits) if target == "host" else count_emulated(build, bits, target)
+    counts = count_image(build, os.path.join(str(bits), f"bench-{target}"), target)
     if len(counts) != len(cases):
         raise Failed(f"{target}: {len(counts)} counts for {len(cases)} cases")
     return counts

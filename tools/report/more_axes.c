@@ -154,16 +154,14 @@ static void resolutions(void)
         for (int y = 0; y < n; y += ROWS) {
             const int rows = n - y < ROWS ? n - y : ROWS;
             const ew_target target = { .colour = band, .depth = band + n * ROWS, .width = (uint16_t)n, .height = (uint16_t)rows,
-                                       .stride = (uint16_t)n, .dither_y = (uint16_t)y };
+                                       .stride = (uint16_t)n, .first_row = (uint16_t)y };
             ew_raster raster;
             ew_material material = c.raster.material;
             material.texture = &c.raster.texture;
             ew_raster_init(&raster, &target);
             ew_raster_clear(&raster, 0);
             ew_raster_set_material(&raster, &material);
-            ew_raster_vertex moved[3] = { v[0], v[1], v[2] };
-            for (int i = 0; i < 3; i++) moved[i].y -= y * 4096;
-            hit(&raster, &moved[0], &moved[1], &moved[2]);
+            hit(&raster, &v[0], &v[1], &v[2]);
             for (int j = 0; j < rows; j++) {
                 const size_t at = (size_t)(y + j) * c.target.stride;
                 differing += memcmp(band + j * n, (const uint16_t *)c.target.colour + at, 2u * (unsigned)n) != 0;
