@@ -61,6 +61,7 @@ def printed(text):
     lines = re.findall(r"^([0-9a-f]{8})\n(?:memory((?: \d+)+)\n)?", text, re.M)
     return [(picture, Memory(*map(int, figures.split())) if figures else None) for picture, figures in lines]
 
+
 def cases_of(target, cases):
     """Those that the target's image draws: of the cost profiles only its own."""
     return [case for case in cases if not case.method.startswith("auto ") or case.method == f"auto {PROFILES.get(target)}"]

@@ -18,6 +18,7 @@ import charts
 import count
 import page
 import tables
+import work
 
 
 class Progress:
@@ -44,7 +45,7 @@ def judge(build, bits, scenes):
 
 
 def measure(args, progress):
-    """Rows of speed_accuracy for every size of the table, {size: what was judged}, and rows of memory for the first."""
+    """Rows of speed_accuracy for every size of the table, {size: what was judged}, rows of memory for the first, rows of work."""
     cases, rows, judged, memory = count.list_cases(args.build), [], {}, []
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         names, jobs = {}, {}
@@ -52,11 +53,13 @@ def measure(args, progress):
             jobs[bits, "judged"] = pool.submit(judge, args.build, bits, args.scenes)
             for target in args.targets:
                 jobs[bits, target] = pool.submit(count.count, args.build, bits, target, cases)
+        for target in work.targets_of(args.targets):
+            jobs["work", target] = pool.submit(work.count_target, args.build, target)
         names = {job: key for key, job in jobs.items()}
         try:
             for job in concurrent.futures.as_completed(names):
                 job.result()
-                progress.step(f"{names[job][1]}, table of {names[job][0]} bits")
+                progress.step(" ".join(map(str, names[job])))
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
@@ -65,7 +68,8 @@ def measure(args, progress):
             judged[bits] = jobs[bits, "judged"].result()
             rows += tables.speed_accuracy(bits, judged[bits], cases, counts)
             memory = memory or count.memory_rows(cases, counts)
-    return rows, judged, memory
+    worked = work.rows_of(args.build, {target: jobs["work", target].result() for target in work.targets_of(args.targets)})
+    return rows, judged, memory, worked
 
 
 def draw_pictures(args, bits):
@@ -85,18 +89,23 @@ def main():
     parser.add_argument("targets", nargs="+", choices=count.TARGETS)
     args = parser.parse_args()
     default = count.DEFAULT_BITS if count.DEFAULT_BITS in args.bits else args.bits[-1]
-    progress = Progress(len(args.bits) * (len(args.targets) + 1) + 2)
-    rows, judged, memory = measure(args, progress)
+    progress = Progress(len(args.bits) * (len(args.targets) + 1) + len(work.targets_of(args.targets)) + 2)
+    rows, judged, memory, worked = measure(args, progress)
     auto = list(tables.auto_rows(rows))
     tables.write(os.path.join(args.out, "speed_accuracy.csv"), tables.COLUMNS, rows)
     tables.write(os.path.join(args.out, "cycles.csv"), tables.CYCLE_COLUMNS, tables.cycle_rows(rows))
     count.write_memory(os.path.join(args.out, "memory.csv"), memory)
     tables.write(os.path.join(args.out, "auto.csv"), tables.AUTO_COLUMNS, auto)
+    fitted, frames, sizes = list(work.fits(worked)), list(work.frames(worked)), work.read_sizes(args.out)
+    tables.write(os.path.join(args.out, "work.csv"), work.COLUMNS, worked)
+    tables.write(os.path.join(args.out, "work_slopes.csv"), work.FIT_COLUMNS, fitted)
+    tables.write(os.path.join(args.out, "frames.csv"), work.FRAME_COLUMNS, frames)
     here = os.path.dirname(os.path.abspath(__file__))
     names = charts.draw(os.path.join(args.out, "charts"), rows, os.path.join(here, "references.csv"), default, progress.say)
+    work_names = work.draw(os.path.join(args.out, "charts"), worked, *sizes)
     progress.step("pictures")
     differing = draw_pictures(args, default)
-    page.write(args.out, rows, auto, names, differing, default, {target: baseline.versions(target) for target in args.targets})
+    page.write(args.out, rows, auto, names, differing, default, (fitted, frames, *sizes, *work_names), {target: baseline.versions(target) for target in args.targets})
     progress.step("page")
     progress.end()
     say(args.out, rows, judged, auto)
