@@ -18,6 +18,7 @@ import baseline  # noqa: E402
 import charts  # noqa: E402
 import count  # noqa: E402
 import model  # noqa: E402
+import report  # noqa: E402
 import tables  # noqa: E402
 import work  # noqa: E402
 
@@ -139,6 +140,18 @@ class Tables(unittest.TestCase):
         dearer, = tables.auto_rows([rungs[0], self.row("auto", "0", 106, 0, 0)])
         self.assertEqual(dearer["state"], "over")
 
+    def test_what_is_beyond_its_bound(self):
+        for displacement, bound, beyond in (("0.2539", "0.25", False), ("0.2540", "0.25", True), ("inf", "0", True), ("nan", "0", True), ("9", "inf", False)):
+            self.assertEqual(tables.beyond({"disp_max_px": displacement, "bound_px": bound}), beyond, displacement)
+
+    def test_dearer_pictures_and_broken_bounds_are_named(self):
+        auto = [{**self.row("auto m3", "0", 106, 0, 0), **dict.fromkeys(tables.AUTO_COLUMNS, "x"), "state": "over", "scene": "D"}]
+        judged = {8: [{"scene": "B", "method": "auto host", "tolerance_px": "1", "disp_max_px": "2", "bound_px": "1"}]}
+        with contextlib.redirect_stdout(io.StringIO()) as said:
+            report.say("out", [], judged, auto)
+        self.assertIn("beyond its bound: table of 8 bits, scene B, auto host 1: 2 px, bound 1 px", said.getvalue())
+        self.assertIn("auto is dearer: x, table of x bits, scene D", said.getvalue())
+
     def test_no_cell_is_empty(self):
         with tempfile.TemporaryDirectory() as folder, self.assertRaises(tables.Failed):
             tables.write(os.path.join(folder, "t.csv"), ["a", "notes"], [{"a": "", "notes": ""}])
@@ -171,6 +184,9 @@ class Atlas(unittest.TestCase):
     @staticmethod
     def walk(states, predicted):
         return [{"axis": "a", "method": "m", "x": str(2 ** i), "predicted_limit": predicted, "state": s} for i, s in enumerate(states)]
+
+    def test_cells_of_a_map_meet(self):
+        self.assertEqual(atlas.edges([0, 1, 2]), [-0.5, 0.5, 1.5, 2.5])
 
     def test_limits(self):
         for states, predicted, measured, verdict in (

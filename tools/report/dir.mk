@@ -29,10 +29,15 @@ ATLAS = mkdir -p $(REPORT) && PYTHONDONTWRITEBYTECODE=1 $(PYTHON) tools/report/a
 stability-run: $(STABILITY)
 	@$(ATLAS)
 # The report shows limits that disagree, and does not stop at them.
-report-run: $(call bench_images,$(REPORT_BITS)) $(work_images) $(foreach b,$(REPORT_BITS),$(C)/$(b)/judge) $(STABILITY) $(BIN)/search_worst
-	@mkdir -p $(REPORT) && PYTHONDONTWRITEBYTECODE=1 $(PYTHON) host_tests/static/size.py --build build/size --base none --report $(REPORT) >$(C)/size.log
-	@$(BIN)/search_worst --tries 3000 >$(REPORT)/worst.txt || [ $$? = 1 ] || exit 2
+report-atlas: $(STABILITY)
 	@$(ATLAS) >$(C)/stability.log || [ $$? = 1 ] || { cat $(C)/stability.log; exit 2; }
+report-size:
+	@mkdir -p $(REPORT) $(C)
+	@PYTHONDONTWRITEBYTECODE=1 $(PYTHON) host_tests/static/size.py --build build/size --base none --report $(REPORT) >$(C)/size.log
+report-worst: $(BIN)/search_worst
+	@mkdir -p $(REPORT)
+	@$(BIN)/search_worst --tries 3000 >$(REPORT)/worst.txt || [ $$? = 1 ] || exit 2
+report-run: $(call bench_images,$(REPORT_BITS)) $(work_images) $(foreach b,$(REPORT_BITS),$(C)/$(b)/judge) report-atlas report-size report-worst
 	@PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=tools/cycles $(PYTHON) tools/report/report.py --build $(C) --out $(REPORT) \
 	  --bits "$(REPORT_BITS)" --scenes "$(foreach s,$(COUNT_SCENES),$(s)=$(B)/scenes/$(s).ewb)" $(COUNT_TARGETS)
-.PHONY: stability stability-run
+.PHONY: stability stability-run report-atlas report-size report-worst

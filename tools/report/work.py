@@ -101,7 +101,7 @@ def draw(folder, rows, sizes, stacks):
     """Names of the charts of work, and of sizes."""
     script, names = [], []
     targets = list(dict.fromkeys(row["target"] for row in rows))
-    for sweep, text in SWEEPS.items():
+    for sweep, text in SWEEPS.items() if targets else ():
         series = [(target, COLOURS[target], [(row["x"], row["instructions"]) for row in rows if (row["target"], row["sweep"]) == (target, sweep)])
                   for target in targets]
         names.append((f"work-{sweep}", text))
