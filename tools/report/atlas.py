@@ -24,7 +24,7 @@ MAPS = {
     "recip_bits_and_uv_range": ("entries of the reciprocal table, 2^bits", "texels from side to side", "error of u or v, texels, table rung",
                                 1 / 64, (1e-4, 10)),
     "distance_and_separation": ("distance of a wall / near", "distance to the wall before it / near", "pixels lost to it, %", 1, (0.1, 100)),
-    "slerp_angle_and_key_bits": ("angle between two keys, rad", "fraction bits of a key", "displacement at 160 px, px", None, (1e-7, 100)),
+    "slerp_angle_and_key_bits": ("angle between two keys, rad", "fraction bits of a key", "error as a part of the angle", 1, (1e-6, 1e3)),
     "slerp_half_turn_and_key_bits": ("what the angle lacks to half a turn, rad", "fraction bits of a key", "displacement at 160 px, px", None,
                                      (1e-7, 100)),
 }
@@ -158,7 +158,7 @@ def draw_maps(folder, rows):
         script.append("EOD")
         ranges = [(min(a for a, _ in s.values()), max(b for _, b in s.values())) for s in sides]
         for axis, text, bit, ends in zip("xy", (x_text, y_text), bits, ranges):
-            tics = "autofreq 2" if bit else "(" + ", ".join(f"'1e{e}' {e}" for e in range(math.ceil(ends[0]), math.floor(ends[1]) + 1)) + ")"
+            tics = "autofreq 2" if bit else "(" + ", ".join(f"'1e{e}' {e}" for e in range(math.ceil(ends[0]), math.floor(ends[1]) + 1, 1 + (ends[1] - ends[0] > 7))) + ")"
             script += [f"set {axis}label '{text}'", f"set {axis}tics {tics}", f"set {axis}range [{ends[0]:.5f}:{ends[1]:.5f}]"]
         script += [f"set title '{name.replace('_', ' ')}'", f"set cblabel '{value_text}'", f"set cbrange [{low}:{high}]"]
         plot = (f"plot $m{len(names)} using 1:2:3:4:5:6:7 with boxxyerror fs solid noborder fc palette notitle, "

@@ -84,14 +84,15 @@ static void distance_and_separation(void)
     }
 }
 
-/* The angle between two keys, and what is missing to half a turn, in radians, against the keys' fraction bits. By how much
- * a point at 160 px is displaced; lines: where the keys' own rounding (one unit of length, twice that of angle) is as large as
- * the angle; where the roundings of the dot product, 3.5 standard deviations of 8 of them, may turn its sign. */
+/* The angle between two keys in radians against the keys' fraction bits: the error as a part of that angle, and the line where
+ * the keys' own rounding (one unit of length, twice that of angle) is as large as the angle. And what is missing to half a
+ * turn: by how much a point at 160 px is displaced, and the line where the roundings of the dot product, 3.5 standard deviations
+ * of 8 of them, may turn its sign. */
 static void angle_and_format(void)
 {
     for (int bits = 6; bits <= 30; bits += 2) {
-        for (double x = 1e-8; x < 3.2; x *= sqrt(10)) {
-            cell("slerp_angle_and_key_bits", x, bits, 160 * rotations_worst(x, bits, 1, 300), log2(2 / x));
+        for (double x = 1e-8; x < 3; x *= sqrt(10)) {
+            cell("slerp_angle_and_key_bits", x, bits, rotations_worst(x, bits, 1, 300) / x, log2(2 / x));
             cell("slerp_half_turn_and_key_bits", x, bits, 160 * rotations_worst(acos(-1.0) - x, bits, 1, 300), log2(7 * sqrt(1.0 / 6) / x));
         }
     }

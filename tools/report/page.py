@@ -282,12 +282,14 @@ reciprocal table of {bits} bits (the default). 320 x 240 pixels, RGB565, 16-bit 
 
 <h2 id="accuracy">How far from the truth</h2>
 <p>Against the referee, the same on every target. Methods: one linear map over the whole triangle (affine) or over runs of 8, 16 or 32
-pixels, runs as long as the bound allows (runs), a reciprocal for each pixel from the table (table) or refined (exact), and the automatic choice.</p>
+pixels, runs as long as the bound allows (runs), a reciprocal for each pixel from the table (table) or refined (exact), and the automatic choice by the generic costs (auto) or by those
+of the processor at hand (auto host and its like).</p>
 {accuracy(rows, bits)}
 
 <h2 id="auto">The automatic choice against the cheapest</h2>
 <p>The automatic choice should cost no more than 5 % above the cheapest single method whose bound holds the tolerance for the
-whole scene, and no more than 10 % above the cheapest that only turned out to keep it. Counted over all scenes, tolerances and
+whole scene, and no more than 10 % above the cheapest that only turned out to keep it. It goes by a cost profile, data that says
+what a run and a pixel cost: the generic one is the same everywhere, and each target has one of its own beside it. Counted over all scenes, tolerances and
 table sizes; <a href="auto.csv">auto.csv</a> names both for every case.</p>
 {auto_tables(auto, bits)}
 
