@@ -48,7 +48,7 @@ static void fans(const pen *p)
 /* How far from 0 u and v are, in texels: ew_raster_triangle refuses 2^18. */
 static void uv_offset(const pen *p)
 {
-    for (double offset = 4096; offset < 1 << 19; offset *= sqrt(2)) {
+    for (double offset = 32768; offset < 1 << 19; offset *= sqrt(2)) {
         canvas c;
         walk_begin(&c, p, 320, 48, 256, 256);
         const double u = -offset, v = offset - 200;
@@ -139,7 +139,7 @@ static void t_junctions(void)
 /* Pixels across and down of a picture that is drawn whole, and in bands of 7 rows: the same, pixel for pixel. */
 static void resolutions(void)
 {
-    static const int sides[] = { 1, 2, 3, 5, 7, 8, 15, 31, 33, 64, 100, 127, 255, 320, 511, 640, 1000, 1024 };
+    static const int sides[] = { 1, 2, 3, 5, 7, 8, 15, 31, 33, 64, 100, 127, 255, 320, 511, 1024 };
     static const pen a_quarter = { &bench_methods[BENCH_METHODS - 1], 4 };
     for (size_t k = 0; k < sizeof sides / sizeof *sides; k++) {
         enum { ROWS = 7 };

@@ -167,7 +167,8 @@ def work_section(fitted, frames, names):
               "na" if row["worst_cycles"] == "na" else f"{int(row['worst_cycles']):,}", row["worst_over_mean"]] for row in frames]
     return f"""<p>One thing grows, the rest stays; automatic choice at 1/4 pixel. A straight line is laid through each sweep, with the least
 relative squares: what one more costs, what is there without any, and how far the line is off at worst. The exponent is the slope on
-logarithmic axes between the two largest steps: 1 is proportional, 0 free. <a href="work.csv">work.csv</a>,
+logarithmic axes between the two largest steps: 1 is proportional, 0 free. Textures of more than 256 x 256 texels leave the fastest
+loop, so the lines over texels end there; the chart shows the step. <a href="work.csv">work.csv</a>,
 <a href="work_slopes.csv">work_slopes.csv</a></p>
 {table(["instructions, target", "for one more", "at none", "from, to", "line off by", "exponent"], lines)}
 <p>Frames of the sample scenes over one round of their animation, as <code>ew_scene_draw</code> draws them, with the materials as baked: a

@@ -13,6 +13,7 @@ import os
 import sys
 import time
 
+import atlas
 import baseline
 import charts
 import count
@@ -132,5 +133,5 @@ def say(out, rows, judged, auto):
 if __name__ == "__main__":
     try:
         main()
-    except (count.Failed, tables.Failed, OSError) as e:
+    except (atlas.Failed, count.Failed, tables.Failed, OSError) as e:
         sys.exit(f"report.py: {e}")
