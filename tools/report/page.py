@@ -162,7 +162,7 @@ def charts_of(names):
 def work_section(fitted, frames, names):
     lines = [[f"{row['target']}, per {row['unit']}", row["per_unit"], f"{int(row['constant']):,}", f"{row['from']:,} to {row['to']:,}",
               percent(row["worst_off"]), row["exponent"]] for row in fitted]
-    worst = [[f"{row['target']}, {row['scene']}", row["frames"], f"{int(row['mean_instructions']):,}", f"{int(row['worst_instructions']):,}",
+    worst = [[f"{row['target']}, {row['scene']}", str(row["frames"]), f"{int(row['mean_instructions']):,}", f"{int(row['worst_instructions']):,}",
               str(row["worst_frame"]), "na" if row["mean_cycles"] == "na" else f"{int(row['mean_cycles']):,}",
               "na" if row["worst_cycles"] == "na" else f"{int(row['worst_cycles']):,}", row["worst_over_mean"]] for row in frames]
     return f"""<p>One thing grows, the rest stays; automatic choice at 1/4 pixel. A straight line is laid through each sweep, with the least
