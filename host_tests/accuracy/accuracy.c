@@ -71,7 +71,7 @@ int main(int argc, char **argv)
         int failed = ew_player_draw(player, i, p->frames, p->fps);
         if (!failed) {
             failed = measure_scene(ew_player_scene(player), ew_player_camera(player), ew_player_time_ms(player),
-                                   &target, EW_PLAYER_BACKGROUND, o.tolerance, EW_RUNG_AUTO, &m);
+                                   &target, EW_PLAYER_BACKGROUND, o.tolerance, EW_RUNG_AUTO, NULL, &m);
             if (failed) fprintf(stderr, "%s: %s: cannot draw the scene: %s\n", tool, p->scene, ew_error_text(failed));
         }
         if (failed) return 1;

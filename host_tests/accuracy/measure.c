@@ -87,6 +87,8 @@ void measure_begin(const ew_target *target, const ref_camera *camera, uint16_t b
     if (!now.pixels || !now.exact || !now.drawn) abort();
 }
 
+void measure_pause(int paused) { now.active = now.pixels && !paused; }
+
 /* ---- one source triangle ---- */
 
 static void keep(size_t at, const candidate *c)
@@ -160,10 +162,10 @@ static void mark_exact(const ew_raster *raster, const ref_triangle *truth, int *
 
 /* Difference of texture coordinates: the core's are modulo the texture's size, and taken for
  * the one nearest to the middle of what is promised. */
-static double uv_error(ew_q20_12 core, double exact, double low, double high, int log2_size)
+static double uv_error(ew_q20_12 core, double exact, double low, double high, int size)
 {
     double middle = (low + high) / 2;
-    return middle + remainder(ldexp(core, -12) - middle, ldexp(1, log2_size)) - exact;
+    return middle + remainder(ldexp(core, -12) - middle, size) - exact;
 }
 
 /* Where one attribute of a triangle in perspective has a given value is a straight line on
@@ -223,8 +225,8 @@ static void judge_fragment(const logged_fragment *f, const ref_triangle *truth, 
     if (f->rung == EW_RUNG_CONSTANT) return;
     double low[2], high[2];
     attribute_range(truth, f->x + 0.5, f->y + 0.5, raster->material.tolerance / 16.0 + 1.0 / 256, low, high);
-    double eu = uv_error(f->u, s.u, low[0], high[0], raster->log2_width);
-    double ev = uv_error(f->v, s.v, low[1], high[1], raster->log2_height);
+    double eu = uv_error(f->u, s.u, low[0], high[0], raster->texture.width);
+    double ev = uv_error(f->v, s.v, low[1], high[1], raster->texture.height);
     now.m.textured++;
     now.m.u_max = fmax(now.m.u_max, fabs(eu));
     now.m.v_max = fmax(now.m.v_max, fabs(ev));

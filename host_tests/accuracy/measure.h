@@ -49,6 +49,9 @@ int measure_mesh(ew_geometry *geometry, const double model_view[3][4], const ew_
  * taken where they are. Returns 0 or its error. */
 int measure_triangle(ew_raster *raster, const ew_raster_vertex *const corners[3]);
 
+/* Leaves what is drawn from now on out of what is judged, or (0) no longer. */
+void measure_pause(int paused);
+
 /* Pictures of what was judged, width * height each, any of them NULL: the colour that exact
  * coverage, depth, u and v give, and of the fragment that is seen its displacement (px, -1
  * where there is none) and its error in texels (the larger of u and v, likewise). */

@@ -129,7 +129,7 @@ static int measure_primitive(const ew_scene *scene, uint32_t number_of, const ew
 }
 
 int measure_scene(const ew_scene *scene, const ew_scene_camera *camera, uint32_t time_ms, const ew_target *target,
-                  uint16_t background, int tolerance, ew_rung rung, measures *result)
+                  uint16_t background, int tolerance, ew_rung rung, const ew_cost *cost, measures *result)
 {
     uint32_t nodes = scene->section[EW_SECTION_NODE].count;
     ew_mat34 *world = calloc(nodes, sizeof *world), node_view;
@@ -146,6 +146,7 @@ int measure_scene(const ew_scene *scene, const ew_scene_camera *camera, uint32_t
     const ew_viewport viewport = { 0, 0, target->width, target->height };
     const ew_projection projection = { focal_x, camera->focal, camera->near_z };
     int error = ew_raster_init(&raster, target);
+    if (!error && cost) error = ew_raster_set_cost(&raster, cost);
     if (!error) error = ew_scene_pose(scene, time_ms, world);
     if (!error) {
         ew_raster_clear(&raster, background);

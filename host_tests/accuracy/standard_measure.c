@@ -2,8 +2,8 @@
 
 #include "../reference/scenes.h"
 
-int measure_standard(char name, ew_rung rung, uint16_t tolerance, const ew_target *target, uint16_t background,
-                     measures *result)
+int measure_standard(char name, ew_rung rung, uint16_t tolerance, const ew_cost *cost, const ew_target *target,
+                     uint16_t background, measures *result)
 {
     static standard_scene scene;
     static ew_screen_vertex screen[33 * 33];
@@ -23,6 +23,8 @@ int measure_standard(char name, ew_rung rung, uint16_t tolerance, const ew_targe
     standard_scene_init(&scene, name);
     standard_model_view(&model_view, exact);
     int error = ew_raster_init(&raster, target);
+    if (error) return error;
+    if (cost) error = ew_raster_set_cost(&raster, cost);
     if (error) return error;
     ew_raster_clear(&raster, background);
     ew_geometry_init(&geometry, &raster);

@@ -18,7 +18,9 @@ import baseline  # noqa: E402
 import charts  # noqa: E402
 import count  # noqa: E402
 import model  # noqa: E402
+import report  # noqa: E402
 import tables  # noqa: E402
+import work  # noqa: E402
 
 
 class Assembled(unittest.TestCase):
@@ -29,7 +31,7 @@ class Assembled(unittest.TestCase):
         if not shutil.which(prefix + "as"):
             self.skipTest(f"{prefix}as is not installed")
         options = {"m0plus": ["-mcpu=cortex-m0plus", "-mthumb"], "m3": ["-mcpu=cortex-m3", "-mthumb"],
-                   "m4": ["-mcpu=cortex-m4", "-mthumb"], "rv32imc": ["-march=rv32imc"]}[target]
+                   "m4": ["-mcpu=cortex-m4", "-mthumb"], "m33": ["-mcpu=cortex-m33", "-mthumb"], "rv32imc": ["-march=rv32imc"]}[target]
         head = "" if target == "rv32imc" else ".syntax unified\n.thumb\n"
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, "a.o")
@@ -70,6 +72,13 @@ class Assembled(unittest.TestCase):
         self.assertEqual(self.loop("m3", source, 0, 100), (1 + 100 + 99 * 2 + 1 + 2, 402, 1 + 100 + 99 * 4 + 1 + 4))
         source = "li a0, 100\n1: addi a0, a0, -1\nbnez a0, 1b\nret"
         self.assertEqual(self.loop("rv32imc", source, 0, 100), (302, 401, 401))  # 1 + 100 + 99 3 + 1 + 2
+
+    def test_m33_as_others_measured_it(self):
+        for source, cycles in (("ldr r0, [r1]\nadds r2, r2, #1\nadds r0, r0, #1", 3), ("ldr r0, [r1]\nadds r0, r0, #1", 3),
+                               ("ldmia r6!, {r0-r3}", 4)):
+            self.assertEqual(self.straight("m33", source)[1], cycles, source)
+        # subs 1, bne 2 taken
+        self.assertEqual(self.loop("m33", "movs r0, #100\n1: subs r0, #1\nbne 1b\nbx lr", 0, 100)[1], 1 + 100 + 99 * 2 + 1 + 2)
 
     def test_kinds_of_instructions(self):
         expected = {"push {r4-r7, lr}": (6, 6), "pop {r4-r7, pc}": (8, 8), "muls r0, r1, r0": (1, 1), "ldrh r0, [r1, r2]": (2, 2),
@@ -131,6 +140,18 @@ class Tables(unittest.TestCase):
         dearer, = tables.auto_rows([rungs[0], self.row("auto", "0", 106, 0, 0)])
         self.assertEqual(dearer["state"], "over")
 
+    def test_what_is_beyond_its_bound(self):
+        for displacement, bound, beyond in (("0.2539", "0.25", False), ("0.2540", "0.25", True), ("inf", "0", True), ("nan", "0", True), ("9", "inf", False)):
+            self.assertEqual(tables.beyond({"disp_max_px": displacement, "bound_px": bound}), beyond, displacement)
+
+    def test_dearer_pictures_and_broken_bounds_are_named(self):
+        auto = [{**self.row("auto m3", "0", 106, 0, 0), **dict.fromkeys(tables.AUTO_COLUMNS, "x"), "state": "over", "scene": "D"}]
+        judged = {8: [{"scene": "B", "method": "auto host", "tolerance_px": "1", "disp_max_px": "2", "bound_px": "1"}]}
+        with contextlib.redirect_stdout(io.StringIO()) as said:
+            report.say("out", [], judged, auto)
+        self.assertIn("beyond its bound: table of 8 bits, scene B, auto host 1: 2 px, bound 1 px", said.getvalue())
+        self.assertIn("auto is dearer: x, table of x bits, scene D", said.getvalue())
+
     def test_no_cell_is_empty(self):
         with tempfile.TemporaryDirectory() as folder, self.assertRaises(tables.Failed):
             tables.write(os.path.join(folder, "t.csv"), ["a", "notes"], [{"a": "", "notes": ""}])
@@ -139,10 +160,33 @@ class Tables(unittest.TestCase):
         self.assertEqual(charts.frontier([(1, 5), (2, 6), (3, 4), (2, 5)]), [(1, 5), (3, 5), (3, 4)])
 
 
+class Work(unittest.TestCase):
+    def test_a_straight_line(self):
+        a, b, worst = work.fit([(x, 50 + 3 * x) for x in (1, 10, 100, 1000)])
+        self.assertAlmostEqual(a, 50)
+        self.assertAlmostEqual(b, 3)
+        self.assertAlmostEqual(worst, 0)
+        self.assertGreater(work.fit([(1, 1), (10, 100), (100, 10000)])[2], 0.5)
+
+    def test_the_worst_frame(self):
+        rows = [{"target": "m3", "sweep": "s", "x": i, "instructions": n, "cycles_typical": 2 * n, "notes": ""} for i, n in enumerate((10, 40, 10))]
+        frame, = work.frames(rows)
+        self.assertEqual((frame["mean_instructions"], frame["worst_instructions"], frame["worst_frame"], frame["worst_cycles"], frame["worst_over_mean"]),
+                         ("20", 40, 1, 80, "2.000"))
+
+    def test_a_target_draws_its_own_profile(self):
+        cases = [count.Case("A", method, "0", 1) for method in ("exact", "auto", "auto m3", "auto host")]
+        self.assertEqual([case.method for case in count.cases_of("m4", cases)], ["exact", "auto", "auto m3"])
+        self.assertEqual([case.method for case in count.cases_of("rv32imc", cases)], ["exact", "auto"])
+
+
 class Atlas(unittest.TestCase):
     @staticmethod
     def walk(states, predicted):
         return [{"axis": "a", "method": "m", "x": str(2 ** i), "predicted_limit": predicted, "state": s} for i, s in enumerate(states)]
+
+    def test_cells_of_a_map_meet(self):
+        self.assertEqual(atlas.edges([0, 1, 2]), [-0.5, 0.5, 1.5, 2.5])
 
     def test_limits(self):
         for states, predicted, measured, verdict in (

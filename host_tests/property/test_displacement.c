@@ -8,40 +8,14 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "../reference/exact.h"
 #include "../reference/scenes.h"
 #include "edgewalk/geometry.h"
+#include "promise.h"
 #include "triangles.h"
 
-enum { PIXELS = 4096 * 4, JUDGED = 64, PX = 4096, TEXTURE_MOST = 2048 };
+enum { JUDGED = 64, PX = 4096 };
 
-static const double E = 1.0 / 64, SNAP = 1.0 / 256, NEAR = 0.25;
-static uint16_t colour[PIXELS], depth[PIXELS], texels[TEXTURE_MOST * TEXTURE_MOST];
-static ew_raster raster;
-static ew_texture texture;
-static uint16_t width, height;
-
-/* ---- what was drawn ---- */
-
-typedef struct fragment {
-    uint16_t x, y, depth;
-    ew_q20_12 u, v;
-} fragment;
-static fragment drawn[2 * PIXELS]; /* clipped triangles may in theory overlap */
-static int drawn_count, drawn_rung;
-
-void ew_trace_triangle(const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *c, int rung)
-{
-    (void)a, (void)b, (void)c;
-    drawn_rung = rung;
-}
-
-void ew_trace_fragment(uint16_t x, uint16_t y, uint16_t d, ew_q20_12 u, ew_q20_12 v)
-{
-    if (drawn_count == 2 * PIXELS) return;
-    fragment f = { x, y, d, u, v };
-    drawn[drawn_count++] = f;
-}
+static const double E = PROMISE_E, SNAP = PROMISE_SNAP, NEAR = 0.25;
 
 /* ---- ways to draw, and how they did ---- */
 
@@ -52,100 +26,60 @@ typedef struct figures {
     long shown; /* the last case of which a row was printed */
 } figures;
 
-typedef struct way {
-    const char *name;
-    ew_rung rung;
-    uint16_t tolerance;
-    double reach; /* texels between corners up to which it promises something */
-    figures seen;
-} way;
-
-static way ways[] = {
-    { .name = "auto 1 px", .rung = EW_RUNG_AUTO, .tolerance = 16, .reach = 32768 },
-    { .name = "auto 1/2 px", .rung = EW_RUNG_AUTO, .tolerance = 8, .reach = 32768 },
-    { .name = "auto 1/4 px", .rung = EW_RUNG_AUTO, .tolerance = 4, .reach = 32768 },
-    { .name = "auto 1/8 px", .rung = EW_RUNG_AUTO, .tolerance = 2, .reach = 32768 },
-    { .name = "auto 1/16 px", .rung = EW_RUNG_AUTO, .tolerance = 1, .reach = 32768 },
-    { .name = "auto 0", .rung = EW_RUNG_AUTO, .tolerance = 0, .reach = 32768 },
-    { .name = "runs 1/4 px", .rung = EW_RUNG_RUNS, .tolerance = 4, .reach = 32768 },
-    { .name = "table", .rung = EW_RUNG_TABLE, .tolerance = 0, .reach = 512 },
-    { .name = "exact", .rung = EW_RUNG_EXACT, .tolerance = 0, .reach = 32768 },
-};
-enum { WAYS = sizeof ways / sizeof *ways };
+static figures seen[PROMISE_WAYS];
+/* Beyond these the ways are bounded by the triangle itself, as the raster layer takes it. */
+enum { MESH_WAYS = 9 };
 
 static long rows_shown;
 
-/* The triangle at hand: as a row of a list of cases, and what its limits are made of. */
-static struct {
-    char row[400];
-    double reach;  /* texels between its corners, the most       */
-    double w_most; /* the largest near/z of its corners          */
-} triangle;
+/* The triangle at hand, as a row of a list of cases too. */
+static promise_triangle triangle;
+static char row[400];
 
 /* The first broken promise of a case, ready for a list of cases. */
-static void show(way *w, const char *what, long number, const fragment *f, double value, double exact, double off)
+static void show(int way, const char *what, long number, const promise_fragment *f, double value, double exact, double off)
 {
-    if (w->seen.shown == number || rows_shown++ >= 20) return;
-    w->seen.shown = number;
-    printf("# %s\n", triangle.row);
+    if (seen[way].shown == number || rows_shown++ >= 20) return;
+    seen[way].shown = number;
+    printf("# %s\n", row);
     printf("# BROKEN EW_CASE=%ld %s, %s: rung drawn %d, %d x %d, texture %d x %d, pixel %d %d: drawn %.5f, exact %.5f, "
-           "off by %.5f px or units\n", number, w->name, what, drawn_rung, width, height, texture.width, texture.height,
-           f->x, f->y, value, exact, off);
-}
-
-/* docs/error-bound.md, "where it stops holding": 1/z has 31 fraction bits, u/z and v/z have
- * 29 at the nearest corner, for differences of 128 texels or more. */
-static int promised(const exact_forms *at)
-{
-    double w = (double)at->w.at, g = triangle.w_most / w;
-    double off = fmax(triangle.reach, 128) * ldexp(g, -27) + triangle.reach * ldexp(1 / w, -31);
-    return w >= 1.0 / 65536 && off <= 1.0 / 128;
+           "off by %.5f px or units\n", number, promise_ways[way].name, what, promise_rung, promise_raster.target.width,
+           promise_raster.target.height, promise_raster.texture.width, promise_raster.texture.height, f->x, f->y, value, exact, off);
 }
 
 /* Judges one fragment. */
-static void judge(way *w, long number, const fragment *f, const exact_forms *at)
+static void judge(int way, long number, const promise_fragment *f, const exact_forms *at)
 {
-    double limit = w->tolerance / 16.0 + SNAP, off = exact_depth_off(at, f->depth, SNAP);
-    double ru = exact_radius(at, &at->u, f->u / 4096.0, texture.width, E);
-    double rv = exact_radius(at, &at->v, f->v / 4096.0, texture.height, E), r = fmax(ru, rv);
-    if (promised(at)) {
-        w->seen.judged++;
-        w->seen.disp_max = fmax(w->seen.disp_max, r);
+    figures *s = &seen[way];
+    double limit = promise_limit(&promise_ways[way], &triangle, at), off = exact_depth_off(at, f->depth, SNAP);
+    double ru = exact_radius(at, &at->u, f->u / 4096.0, promise_raster.texture.width, E);
+    double rv = exact_radius(at, &at->v, f->v / 4096.0, promise_raster.texture.height, E), r = fmax(ru, rv);
+    if (promise_given(&triangle, at) && !isinf(limit)) {
+        s->judged++;
+        s->disp_max = fmax(s->disp_max, r);
         if (r > limit) {
-            w->seen.broken++;
-            if (ru >= rv) show(w, "u", number, f, f->u / 4096.0, exact_value(at, &at->u), ru);
-            else show(w, "v", number, f, f->v / 4096.0, exact_value(at, &at->v), rv);
+            s->broken++;
+            if (ru >= rv) show(way, "u", number, f, f->u / 4096.0, exact_value(at, &at->u), ru);
+            else show(way, "v", number, f, f->v / 4096.0, exact_value(at, &at->v), rv);
         }
     } else {
-        w->seen.beyond++;
-        w->seen.beyond_off += r > limit;
+        s->beyond++;
+        s->beyond_off += r > limit;
     }
     if (isnan(off)) return;
-    w->seen.depth_judged++;
-    w->seen.depth_max = fmax(w->seen.depth_max, off);
+    s->depth_judged++;
+    s->depth_max = fmax(s->depth_max, off);
     if (off > 1) {
-        w->seen.broken_depth++;
-        show(w, "depth", number, f, f->depth + 0.5, (double)(65536 * at->w.at), off);
+        s->broken_depth++;
+        show(way, "depth", number, f, f->depth + 0.5, (double)(65536 * at->w.at), off);
     }
 }
 
-static void use(const way *w)
+static void picture(uint16_t width, uint16_t height)
 {
-    const ew_material material = { .texture = &texture, .tolerance = w->tolerance, .rung = (uint8_t)w->rung,
-                                   .flags = EW_DOUBLE_SIDED };
-    assert_int_equal(ew_raster_set_material(&raster, &material), EW_OK);
-    drawn_count = 0;
-}
-
-static void picture(uint16_t w, uint16_t h)
-{
-    const ew_target target = { .colour = colour, .depth = depth, .width = w, .height = h, .stride = w };
     static const uint16_t sizes[5][2] = { { 256, 256 }, { 2048, 2048 }, { 2048, 32 }, { 64, 1024 }, { 256, 128 } };
     uint32_t size = pick(5);
-    width = w, height = h;
-    texture = (ew_texture){ .texels = texels, .width = sizes[size][0], .height = sizes[size][1] };
-    memset(depth, 0, 2u * w * h);
-    assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
+    promise_picture(width, height, sizes[size][0], sizes[size][1]);
 }
 
 /* ---- triangles of the raster layer ---- */
@@ -176,26 +110,15 @@ static void choose_texels(ew_raster_vertex v[3], double reach)
     }
 }
 
-static void remember(const ew_raster_vertex v[3])
-{
-    triangle.reach = triangle.w_most = 0;
-    for (int i = 0; i < 3; i++) {
-        double far = fmax(fabs((double)v[i].u - v[0].u), fabs((double)v[i].v - v[0].v)) / PX;
-        triangle.reach = fmax(triangle.reach, far);
-        triangle.w_most = fmax(triangle.w_most, ldexp(v[i].w, -31));
-    }
-    snprintf(triangle.row, sizeof triangle.row, "%s", triangle_row(v));
-}
-
 /* Judges what was drawn: all of a few fragments, some of many. */
-static void judge_drawn(way *w, long number, const exact_corners *corners, const ref_triangle *truth)
+static void judge_drawn(int way, long number, const exact_corners *corners, const ref_triangle *truth)
 {
-    int all = drawn_count <= JUDGED;
-    w->seen.triangles++;
-    for (int i = 0; i < (all ? drawn_count : JUDGED); i++) {
-        const fragment *f = &drawn[all ? i : (int)pick((uint32_t)drawn_count)];
+    int all = promise_count <= JUDGED;
+    seen[way].triangles++;
+    for (int i = 0; i < (all ? promise_count : JUDGED); i++) {
+        const promise_fragment *f = &promise_drawn[all ? i : (int)pick((uint32_t)promise_count)];
         exact_forms at = corners ? exact_from_corners(corners, f->x, f->y) : exact_from_truth(truth, f->x, f->y);
-        judge(w, number, f, &at);
+        judge(way, number, f, &at);
     }
 }
 
@@ -204,39 +127,38 @@ static void draw_and_judge(const ew_raster_vertex v[3], long number)
 {
     exact_corners corners;
     if (!exact_corners_init(&corners, v)) return; /* only its snapped corners may have an area */
-    remember(v);
-    for (int k = 0; k < WAYS; k++) {
-        if (triangle.reach > ways[k].reach) continue;
-        use(&ways[k]);
-        int result = ew_raster_triangle(&raster, &v[0], &v[1], &v[2]);
+    triangle = promise_of(v);
+    snprintf(row, sizeof row, "%s", triangle_row(v));
+    for (int k = 0; k < PROMISE_WAYS; k++) {
+        if (triangle.reach > promise_ways[k].reach) continue;
+        promise_use(&promise_ways[k], number);
+        int result = ew_raster_triangle(&promise_raster, &v[0], &v[1], &v[2]);
         assert_true(result >= 0);
         if (!result) return;
-        judge_drawn(&ways[k], number, &corners, NULL);
+        judge_drawn(k, number, &corners, NULL);
     }
 }
 
 static void begin(void)
 {
     rows_shown = 0;
-    for (int k = 0; k < WAYS; k++) {
-        ways[k].seen = (figures){ .shown = -1 };
-    }
+    for (int k = 0; k < PROMISE_WAYS; k++) seen[k] = (figures){ .shown = -1 };
 }
 
 static void end(const char *name)
 {
     char text[64];
     long broken = 0, judged = 0;
-    for (int k = 0; k < WAYS; k++) {
-        const way *w = &ways[k];
-        broken += w->seen.broken + w->seen.broken_depth;
-        judged += w->seen.judged;
-        snprintf(text, sizeof text, "%s: %s", name, w->name);
-        cases_figure("displacement", text, w->seen.triangles, w->seen.judged, w->seen.broken, w->seen.disp_max, "px");
-        cases_figure("depth", text, w->seen.triangles, w->seen.depth_judged, w->seen.broken_depth, w->seen.depth_max, "units");
-        if (!w->seen.beyond) continue;
-        cases_figure("not promised", text, w->seen.triangles, w->seen.beyond, 0, (double)w->seen.beyond_off,
-                     "beyond the disc");
+    for (int k = 0; k < PROMISE_WAYS; k++) {
+        const figures *s = &seen[k];
+        if (!s->triangles) continue;
+        broken += s->broken + s->broken_depth;
+        judged += s->judged;
+        snprintf(text, sizeof text, "%s: %s", name, promise_ways[k].name);
+        cases_figure("displacement", text, s->triangles, s->judged, s->broken, s->disp_max, "px");
+        cases_figure("depth", text, s->triangles, s->depth_judged, s->broken_depth, s->depth_max, "units");
+        if (!s->beyond) continue;
+        cases_figure("not promised", text, s->triangles, s->beyond, 0, (double)s->beyond_off, "beyond the disc");
     }
     test_context("%s: %ld of %ld promises broken", name, broken, judged);
     assert_true(judged > 0 || cases_alone());
@@ -255,7 +177,7 @@ static void run(const char *name, double ratio, double reach, long slice, long w
         if (pick(16) == 0) picture(4096, 4);
         else if (pick(16) == 0) picture(4, 4096);
         else picture(64, 48);
-        triangle_place(v, kinds[pick(7)], width, height);
+        triangle_place(v, kinds[pick(7)], promise_raster.target.width, promise_raster.target.height);
         choose_depths(v, pow(ratio, uniform(0, 1)));
         choose_texels(v, pow(reach, uniform(0, 1)));
         triangle_context(name, c.number, v);
@@ -307,8 +229,7 @@ static int choose_corners(ew_vertex16 v[3], ref_corner exact[3], int bits)
 {
     double size = pow(2, uniform(8, 14.9)), deep = pow(2, uniform(7, 14.9));
     int behind = 0, at = 0;
-    triangle.reach = 0;
-    triangle.w_most = 1;
+    triangle = (promise_triangle){ 0, 1, HUGE_VAL };
     for (int i = 0; i < 3; i++) {
         v[i].x = (int16_t)uniform(-size, size), v[i].y = (int16_t)uniform(-size, size);
         v[i].z = (int16_t)(uniform(-1, 0.3) * (pick(2) ? deep : 512));
@@ -318,10 +239,10 @@ static int choose_corners(ew_vertex16 v[3], ref_corner exact[3], int bits)
         behind += exact[i].z < NEAR;
         triangle.reach = fmax(triangle.reach, fabs(exact[i].u - exact[0].u));
         triangle.reach = fmax(triangle.reach, fabs(exact[i].v - exact[0].v));
-        at += snprintf(triangle.row + at, sizeof triangle.row - (size_t)at, "{ %d, %d, %d, %d, %d }, ", v[i].x, v[i].y,
+        at += snprintf(row + at, sizeof row - (size_t)at, "{ %d, %d, %d, %d, %d }, ", v[i].x, v[i].y,
                        v[i].z, v[i].u, v[i].v);
     }
-    snprintf(triangle.row + at, sizeof triangle.row - (size_t)at, "uv fraction bits %d", bits);
+    snprintf(row + at, sizeof row - (size_t)at, "uv fraction bits %d", bits);
     return behind;
 }
 
@@ -329,13 +250,13 @@ static int choose_corners(ew_vertex16 v[3], ref_corner exact[3], int bits)
 static int draw_and_judge_mesh(ew_geometry *geometry, const ew_mesh *mesh, const ref_triangle *truth, long number)
 {
     int drawn_ways = 0;
-    for (int k = 0; k < WAYS; k++) {
-        if (triangle.reach > ways[k].reach) continue;
-        use(&ways[k]);
+    for (int k = 0; k < MESH_WAYS; k++) {
+        if (triangle.reach > promise_ways[k].reach) continue;
+        promise_use(&promise_ways[k], number);
         int32_t result = ew_draw_triangles(geometry, mesh);
         assert_true(result >= 0);
         if (result == 0) break;
-        judge_drawn(&ways[k], number, NULL, truth);
+        judge_drawn(k, number, NULL, truth);
         drawn_ways++;
     }
     return drawn_ways;
@@ -365,10 +286,10 @@ static void through_the_near_plane(void **state)
                                .uv_fraction_bits = (uint8_t)bits };
         picture(64, 48);
         if (!ref_triangle_init(&truth, &eye, corner)) continue;
-        ew_geometry_init(&geometry, &raster);
+        ew_geometry_init(&geometry, &promise_raster);
         assert_int_equal(ew_transform_set(&geometry.transform, &projection, &model_view, &viewport), EW_OK);
         ew_transform_vertices(&geometry.transform, v, 3, screen);
-        test_context("EW_CASE=%ld %s: %s", c.number, name, triangle.row);
+        test_context("EW_CASE=%ld %s: %s", c.number, name, row);
         if (draw_and_judge_mesh(&geometry, &mesh, &truth, c.number) && behind) cut++;
     }
     assert_true(cut > 0 || cases_alone());

@@ -5,7 +5,7 @@ usage: size.py --build DIR [--base REVISION] [--report DIR]
 
 Writes REPORT/size.csv (bytes of each configuration as linked from its public functions, and of each
 object) and REPORT/stack.csv (the deepest calls from each public function), and prints the
-configurations. `change` is against REVISION, or na where that cannot be had.
+configurations. `change` is against REVISION, or na where that cannot be had or is `none`.
 """
 import argparse
 import csv
@@ -70,7 +70,7 @@ def main():
     sizes, stacks = measure(cross.ROOT, os.path.join(out, "now"))
     if not sizes:
         return 1
-    folder, old_sizes, old_stacks = checked_out(args.base, out), {}, {}
+    folder, old_sizes, old_stacks = None if args.base == "none" else checked_out(args.base, out), {}, {}
     if folder:
         try:
             old_sizes, old_stacks = measure(folder, os.path.join(folder, "objects"))

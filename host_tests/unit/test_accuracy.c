@@ -18,7 +18,7 @@ static measures draw(char name, ew_rung rung, uint16_t tolerance)
     const ew_target target = { .colour = colour, .depth = depth, .width = STANDARD_WIDTH, .height = STANDARD_HEIGHT,
                                .stride = STANDARD_WIDTH };
     measures m;
-    assert_int_equal(measure_standard(name, rung, tolerance, &target, BACKGROUND, &m), 0);
+    assert_int_equal(measure_standard(name, rung, tolerance, NULL, &target, BACKGROUND, &m), 0);
     return m;
 }
 

@@ -40,7 +40,7 @@ def measure(args):
     """{target: versions}, {(target, scene, method, tolerance): instructions}"""
     cases, counts = count.list_cases(args.build), {}
     for target in args.targets:
-        for case, c in zip(cases, count.count(args.build, args.bits, target, cases)):
+        for case, c in zip(count.cases_of(target, cases), count.count(args.build, args.bits, target, cases)):
             counts[target, case.scene, case.method, case.tolerance] = c.instructions
     return {target: versions(target) for target in args.targets}, counts
 

@@ -1,5 +1,6 @@
 /* What is counted: transform, culling, set-up and spans of each scene (posing its nodes, where it
- * is a baked one), once for each case of cases.h, then of scenes A and D with each fill. The same file is firmware and host program; both
+ * is a baked one), once for each case of cases.h, and with BENCH_COST, the target's own cost profile, the
+ * automatic choice by that, at each tolerance; then of scenes A and D with each fill. The same file is firmware and host program; both
  * print the hash of every picture, which is the same on all targets.
  *
  * On the host: `bench --list` names the cases and says how many fragments each scene has, when
@@ -140,9 +141,10 @@ static void print_hash(uint32_t h)
 }
 
 /* Returns 0, or 1 when the scene cannot be drawn. */
-static int run(const bench_scene *s, const ew_target *target, const ew_material *material)
+static int run(const bench_scene *s, const ew_target *target, const ew_material *material, const ew_cost *cost)
 {
     int error = ew_raster_init(&raster, target);
+    if (!error && cost) error = ew_raster_set_cost(&raster, cost);
     ew_raster_clear(&raster, BACKGROUND);
     if (!error) error = ew_raster_set_material(&raster, material);
     ew_geometry_init(&geometry, &raster);
@@ -223,12 +225,12 @@ static int run_mode(const bench_scene *s, const bench_mode *m)
     return error != 0;
 }
 
-static int run_method(const bench_scene *s, const bench_method *method, uint16_t tolerance)
+static int run_method(const bench_scene *s, ew_rung rung, uint16_t tolerance, const ew_cost *cost)
 {
     const ew_target target = { .colour = colour, .depth = depth, .width = W, .height = H, .stride = W };
     const ew_texture texture = { .texels = bench_texture, .width = 256, .height = 256 };
-    const ew_material material = { .texture = &texture, .tolerance = tolerance, .rung = method->rung };
-    return run(s, &target, &material);
+    const ew_material material = { .texture = &texture, .tolerance = tolerance, .rung = (uint8_t)rung };
+    return run(s, &target, &material, cost);
 }
 
 /* Scenes that fills are counted on: the number-th, 0 behind the last. */
@@ -249,7 +251,7 @@ static int run_fill(const bench_scene *s, const bench_fill *fill)
     for (uint32_t i = 0; i < BENCH_MOST_COLOURS; i++) {
         colours[i] = (ew_colour888){ (uint8_t)(128 + i % 120), (uint8_t)(255 - i % 77), (uint8_t)(160 + i % 31) };
     }
-    return run(s, &target, &material);
+    return run(s, &target, &material, NULL);
 }
 
 static int run_all(void)
@@ -258,8 +260,13 @@ static int run_all(void)
     uint16_t tolerance;
     for (int s = 0; s < bench_scene_count; s++) {
         for (int i = 0; bench_case(i, &method, &tolerance); i++) {
-            if (run_method(&bench_scenes[s], method, tolerance)) return 1;
+            if (run_method(&bench_scenes[s], method->rung, tolerance, NULL)) return 1;
         }
+#ifdef BENCH_COST
+        for (int i = 0; i < BENCH_TOLERANCES; i++) {
+            if (run_method(&bench_scenes[s], EW_RUNG_AUTO, bench_tolerances[i], &BENCH_COST)) return 1;
+        }
+#endif
     }
     const bench_scene *of_fills;
     for (int s = 0; (of_fills = fill_scene(s)); s++) {
@@ -307,10 +314,14 @@ static int list(void)
         for (int i = 0; bench_case(i, &method, &tolerance); i++) {
             if (i == 0) {
                 fragments = 0;
-                if (run_method(&bench_scenes[s], method, tolerance)) return 1;
+                if (run_method(&bench_scenes[s], method->rung, tolerance, NULL)) return 1;
                 of_scene[s] = fragments;
             }
             printf("%s,%s,%g,%ld\n", bench_scenes[s].name, method->name, tolerance / 16.0, fragments);
+        }
+        for (int i = 0; i < BENCH_PROFILES * BENCH_TOLERANCES; i++) {
+            printf("%s,%s,%g,%ld\n", bench_scenes[s].name, bench_profiles[i / BENCH_TOLERANCES].name,
+                   bench_tolerances[i % BENCH_TOLERANCES] / 16.0, fragments);
         }
     }
     const bench_scene *of_fills;

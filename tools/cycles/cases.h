@@ -74,6 +74,20 @@ static const bench_fill bench_fills[] = {
 };
 enum { BENCH_FILLS = sizeof bench_fills / sizeof *bench_fills, BENCH_FILL_TOLERANCE = 4 };
 
+/* What the automatic choice goes by: beside "auto", which is drawn with ew_cost_generic, each of these is
+ * drawn at every tolerance. */
+typedef struct bench_profile {
+    const char *name;
+    const ew_cost *cost;
+} bench_profile;
+
+static const bench_profile bench_profiles[] = {
+    { "auto m0plus", &ew_cost_m0plus },
+    { "auto m3", &ew_cost_m3 },
+    { "auto host", &ew_cost_host },
+};
+enum { BENCH_PROFILES = sizeof bench_profiles / sizeof *bench_profiles };
+
 /* Of baked scenes, whose camera is used as it is. */
 enum { BENCH_WIDTH = 320, BENCH_HEIGHT = 240, BENCH_TIME_MS = 1000 };
 

@@ -24,6 +24,8 @@ EMULATORS = {"m0plus": [*ARM, "mps2-an385"], "m3": [*ARM, "mps2-an385"], "m4": [
              "m33": [*ARM, "mps2-an505"], "rv32imc": RISCV}
 TARGETS = ["host", *EMULATORS]
 DEFAULT_BITS = 8
+# The cost profile that is drawn beside the generic one: tools/cycles/dir.mk builds it in
+PROFILES = {"host": "host", "m0plus": "m0plus", "m3": "m3", "m4": "m3", "m33": "m3"}
 
 # One picture: what was drawn and by which method (tolerance in px, a string), the fragments of the scene.
 Case = namedtuple("Case", "scene method tolerance fragments")
@@ -50,7 +52,7 @@ def tools_prefix(target):
 
 
 def list_cases(build):
-    lines = run([os.path.join(build, "list"), "--list"]).split()
+    lines = run([os.path.join(build, "list"), "--list"]).splitlines()
     return [Case(scene, method, tolerance, int(n)) for scene, method, tolerance, n in (line.split(",") for line in lines)]
 
 
@@ -58,6 +60,11 @@ def printed(text):
     """(hash, Memory or None) of each picture that an image prints."""
     lines = re.findall(r"^([0-9a-f]{8})\n(?:memory((?: \d+)+)\n)?", text, re.M)
     return [(picture, Memory(*map(int, figures.split())) if figures else None) for picture, figures in lines]
+
+
+def cases_of(target, cases):
+    """Those that the target's image draws: of the cost profiles only its own."""
+    return [case for case in cases if not case.method.startswith("auto ") or case.method == f"auto {PROFILES.get(target)}"]
 
 
 # ---- host ----
@@ -83,8 +90,8 @@ def outside_libc(path):
     return total
 
 
-def count_host(build, bits):
-    image, out = (os.path.join(build, str(bits), name) for name in ("bench-host", "callgrind"))
+def count_host(image):
+    out = image + ".callgrind"
     for old in glob.glob(out + ".*"):
         os.unlink(old)
     pictures = printed(run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", "--toggle-collect=bench_draw",
@@ -113,15 +120,15 @@ def regions(path):
     return found
 
 
-def count_emulated(build, bits, target):
-    image, out = (os.path.join(build, str(bits), name) for name in (f"bench-{target}", f"regions-{target}"))
+def count_emulated(image, target, plugin):
+    out = image + ".regions"
     symbols = dict(reversed(line.split()[::2]) for line in run([tools_prefix(target) + "nm", image]).splitlines()
                    if len(line.split()) == 3)
     begin, end = (int(symbols[name], 16) for name in ("bench_draw", "bench_end"))
     # semihosting writes to stderr
     done = subprocess.run([*EMULATORS[target], "-display", "none", "-monitor", "none", "-serial", "none",
                            "-semihosting-config", "enable=on,target=native", "-kernel", image, "-plugin",
-                           f"{os.path.join(build, 'count.so')},begin={begin:#x},end={end:#x},edges=1,out={out}"],
+                           f"{plugin},begin={begin:#x},end={end:#x},edges=1,out={out}"],
                           stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, text=True, check=False)
     if done.returncode != 0:
         raise Failed(f"{EMULATORS[target][0]}: {image}: status {done.returncode}: {done.stderr.strip()[-400:]}")
@@ -132,9 +139,16 @@ def count_emulated(build, bits, target):
     return counts
 
 
+def count_image(build, name, target):
+    """A Count for each region from bench_draw to bench_end of an image."""
+    image = os.path.join(build, name)
+    return count_host(image) if target == "host" else count_emulated(image, target, os.path.join(build, "count.so"))
+
+
 def count(build, bits, target, cases):
-    """A Count for each case."""
-    counts = count_host(build, bits) if target == "host" else count_emulated(build, bits, target)
+    """A Count for each of the target's cases."""
+    cases = cases_of(target, cases)
+    counts = count_image(build, os.path.join(str(bits), f"bench-{target}"), target)
     if len(counts) != len(cases):
         raise Failed(f"{target}: {len(counts)} counts for {len(cases)} cases")
     return counts
@@ -157,8 +171,8 @@ def memory_rows(cases, counts):
     """RAM against instructions of every picture in bands; counts: {target: [Count]}."""
     rows = []
     for target, of_target in counts.items():
-        at_once = {case.scene: c.instructions for case, c in zip(cases, of_target) if case.method == "at-once"}
-        for case, c in zip(cases, of_target):
+        at_once = {case.scene: c.instructions for case, c in zip(cases_of(target, cases), of_target) if case.method == "at-once"}
+        for case, c in zip(cases_of(target, cases), of_target):
             if case.method not in MODES:
                 continue
             m, goal, notes = c.memory, goal_bytes(case.method, c.memory), []
@@ -188,7 +202,7 @@ def print_table(cases, counts):
     print(f"{'per fragment':28s}" + "".join(f"{scene:>16s}" for scene in scenes))
     for target, of_target in counts.items():
         rows = {}
-        for case, c in zip(cases, of_target):
+        for case, c in zip(cases_of(target, cases), of_target):
             text = f"{c.instructions / case.fragments:.1f}"
             if c.cycles:
                 text += f" ({c.cycles[1] / case.fragments:.1f})"
@@ -221,7 +235,7 @@ def main():
             out.writerow(["target", "scene", "method", "tolerance_px", "fragments", "instructions", "cycles_low",
                           "cycles_typical", "cycles_high"])
             for target, of_target in counts.items():
-                for case, c in zip(cases, of_target):
+                for case, c in zip(cases_of(target, cases), of_target):
                     out.writerow([target, *case, c.instructions, *(c.cycles or ["na"] * 3)])
     if args.memory:
         write_memory(args.memory, memory_rows(cases, counts))

@@ -13,6 +13,13 @@ COUNT_FILES := $(COUNT_SCENES:%=$(B)/scenes/%.ewb)
 bench_flags := -std=gnu99 -O2 -g -Wall -Wextra
 freestanding := -ffreestanding -ffunction-sections
 # the emulated ones are those of examples/firmware/board/boards.mk
+# the cost profile that a target's firmware would set; the generic one is drawn on all
+profile_host := host
+profile_m0plus := m0plus
+profile_m3 := m3
+profile_m4 := m3
+profile_m33 := m3
+bench_cost = $(if $(profile_$(1)),-DBENCH_COST=ew_cost_$(profile_$(1)))
 bench_cc = $(if $(filter host,$(1)),$(CC) $(bench_flags),$(cc_$(1)) $(bench_flags) $(freestanding))
 
 $(C)/scene_data: $(B)/tools/cycles/scene_data.o $(B)/host_tests/reference/scenes.o $(LIB)
@@ -30,12 +37,28 @@ $(C)/data-$(1).o: $(C)/scene_data.c
 	@mkdir -p $$(@D); echo "CC $$@"; $$(call bench_cc,$(1)) $$(DEPFLAGS) -Iinclude -Itools/cycles -c -o $$@ $$<
 $(C)/%/bench-$(1): $(CYCLES_DEPS) $(C)/data-$(1).o $(board_$(1)) $(wildcard $(BOARD)/*.ld $(BOARD)/*.h)
 	@mkdir -p $$(@D); echo "CC $$@"
-	@$$(call bench_cc,$(1)) -DEW_RECIP_BITS=$$* -Iinclude -o $$@ $$(filter %.c %.S %.o,$$^) $$(link_$(1))
+	@$$(call bench_cc,$(1)) -DEW_RECIP_BITS=$$* $$(call bench_cost,$(1)) -Iinclude -o $$@ $$(filter %.c %.S %.o,$$^) $$(link_$(1))
 endef
 $(foreach t,host m0plus m3 m4 m33 rv32imc,$(eval $(call bench_target,$(t))))
 $(C)/list: $(CYCLES_DEPS) $(C)/data-host.o
 	@echo "CC $@"
 	@$(call bench_cc,host) -DEW_TRACE=1 -Iinclude -o $@ $(filter %.c %.o,$^)
+# work-TARGET: cost against work, at the default size of the table. Its pictures need more memory than
+# the SRAM of the boards: 16 MB of PSRAM.
+WORK_TARGETS := host m0plus m3 rv32imc
+work_link = $(if $(filter m0plus m3,$(1)),$(call memory,0,0x400000,0x21000000,0x1000000),$(link_$(1)))
+define work_target
+$(C)/work-$(1): tools/cycles/work.c $(CYCLES_DEPS) $(C)/data-$(1).o $(board_$(1)) $(wildcard $(BOARD)/*.ld $(BOARD)/*.h)
+	@mkdir -p $$(@D); echo "CC $$@"
+	@$$(call bench_cc,$(1)) -DEW_RECIP_BITS=$(COUNT_BITS) -Iinclude -Itools/cycles -o $$@ \
+	  $$(filter-out tools/cycles/bench.c,$$(filter %.c %.S %.o,$$^)) $$(call work_link,$(1))
+endef
+$(foreach t,$(WORK_TARGETS),$(eval $(call work_target,$(t))))
+$(C)/work-list: tools/cycles/work.c $(CYCLES_DEPS) $(C)/data-host.o
+	@echo "CC $@"
+	@$(call bench_cc,host) -DEW_TRACE=1 -Iinclude -Itools/cycles -o $@ $(filter-out tools/cycles/bench.c,$(filter %.c %.o,$^))
+work_images = $(C)/work-list $(addprefix $(C)/work-,$(filter $(WORK_TARGETS),$(COUNT_TARGETS)))
+
 bench_images = $(C)/list $(C)/count.so $(foreach b,$(1),$(foreach t,$(COUNT_TARGETS),$(C)/$(b)/bench-$(t)))
 
 COUNT := PYTHONDONTWRITEBYTECODE=1 $(PYTHON) tools/cycles/

@@ -15,13 +15,15 @@ SOURCES = {
               "data processing, multiply and loads were compared; those for branches, BL and POP {pc} were compared "
               "with a second, independent tool's only.",
     "m3": "Arm DDI 0337, Cortex-M3 Technical Reference Manual: table 18.1 (issue E) for data processing, MUL, branches, "
-          "single and multiple loads and stores, and 'Load/store timings' (issue I), all compared. Unchecked, from "
-          "memory: MLA 2, long multiplies 3-5 and 4-7, divides 2-12, folded IT.",
+          "single and multiple loads and stores, and 'Load/store timings' (issue I); table 3-1 of its revision r2p1 for MLA 2, "
+          "long multiplies 3-5 and 4-7, divides 2-12: all compared. Unchecked, from memory: folded IT.",
     "m4": "Arm 100166, Cortex-M4 Technical Reference Manual, table 3-1: data processing, MUL, MLA and the range of P "
           "(pipeline refill, 1-3) compared; load/store timings compared with Texas Instruments SWCU185. Unchecked, "
           "from memory: long multiplies 1, divides 2-12, folded IT.",
-    "m33": "An estimate: Arm publishes no instruction timings for the Cortex-M33. The M4's figures, with a stall where a "
-           "loaded register is used at once instead of two-cycle loads; low lets branches not taken be free.",
+    "m33": "An estimate: Arm publishes no instruction timings for the Cortex-M33. Compared with measurements of an RP2350 that "
+           "others published (jnk0le, 'pipeline cycle test', 2025): single loads and stores 1, a stall where a loaded register is "
+           "used at once, N registers in N cycles, taken branches 1 or 2, branches not taken 0 or 1, IT 0 behind most "
+           "instructions. From the M4: divides 2-12, multiplies 1.",
     "rv32imc": "lowRISC Ibex, 'Pipeline Details' (stall cycles of each kind of instruction), compared. Low: single-cycle "
                "multiplier and branch target adder; typical: fast multiplier, no such adder; high: slow multiplier.",
 }
@@ -73,7 +75,8 @@ def arm_instruction(address, size, mnemonic, operands):
         written, read = frozenset(), frozenset(registers)
     else:
         to_pc = registers[:1] == ["pc"]
-        read = frozenset(registers) if len(registers) == 2 and kind == "data" and not name.startswith("mov") else read
+        # adds r0, #1 and adds r0, r1 read what they write
+        read = frozenset(registers) if len(registers) <= 2 and kind == "data" and not name.startswith("mov") else read
     return Instruction(address, size, kind, written, in_address, read | in_address, count, to_pc, f"{mnemonic} {operands}")
 
 
@@ -163,13 +166,13 @@ def m33(i, before, taken, target):
     if i.kind == "branch-if":
         own = same(1) if taken else (0, 1, 1 + stall)
     elif i.kind in ("load-many", "store-many"):
-        own = i.registers, i.registers + 1, i.registers + 1
+        own = i.registers, i.registers, i.registers + 1
     elif i.kind == "load":
         own = 1, 1 + stall, 2
     else:
-        own = {"divide": (2, 7, 12), "multiply-long": (1, 1, 2), "multiply-long-add": (1, 1, 2), "it": (0, 1, 1),
+        own = {"divide": (2, 7, 12), "multiply-long": (1, 1, 2), "multiply-long-add": (1, 1, 2), "it": (0, 0, 1),
                "table-branch": same(3)}.get(i.kind, (1, 1 + stall, 1 + stall))
-    return plus(own, (1, 2, 3) if jump else same(0)) if target is not None or jump else own
+    return plus(own, (0, 1, 2) if jump else same(0)) if target is not None or jump else own
 
 
 def ibex(i, before, taken, target):

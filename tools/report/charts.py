@@ -13,7 +13,7 @@ ERRORS = {"worst": ("disp_max_px", "worst displacement, px"), "rms": ("disp_rms_
 FLOOR = {"worst": 1 / 512, "rms": 1 / 8192, "texels": 1 / 8192}  # what is below stands here: a logarithmic axis has no 0
 COLOURS = ["#1b6ca8", "#7b3fa0", "#2a9d4a", "#d98a00", "#0a9396", "#8d6e63", "#5c6bc0", "#9e9d24"]
 AUTO_COLOUR, FRONTIER_COLOUR, REFERENCE_COLOUR, PEER_COLOUR = "#c8102e", "#b0b0b0", "#555555", "#d81b9a"
-WIDTH, HEIGHT = 480, 400
+WIDTH, HEIGHT = 480, 420
 
 
 def texels(row):
@@ -92,7 +92,7 @@ def panel(script, name, title, rows, marks, speed, error, bits):
     ordered = sorted(series(rows, bits).items(), key=lambda item: item[0].startswith(tables.AUTO))
     for method, own in ordered:
         auto = method.startswith(tables.AUTO)
-        style = f"lw 3 pt 7 ps 1.1 lc rgb '{AUTO_COLOUR}'" if auto else f"lw 1.5 pt 6 ps 0.8 lc rgb '{next(colours)}'"
+        style = f"lw {3 if method == tables.AUTO else '1.5 dt 2'} pt 7 ps {1.1 if method == tables.AUTO else 0.7} lc rgb '{AUTO_COLOUR}'" if auto else f"lw 1.5 pt 6 ps 0.8 lc rgb '{next(colours)}'"
         plots.append(f"{script.block(points(own, speed, error))} with linespoints {style} title '{method}'")
     for source, pt, colour in (("prototype", 2, REFERENCE_COLOUR), ("peers", 3, PEER_COLOUR)):
         own = [mark for mark in marks if (mark["source"] == "prototype") == (source == "prototype")]
@@ -111,7 +111,7 @@ def panel(script, name, title, rows, marks, speed, error, bits):
 
 
 HEAD = ["set logscale xy", "set grid lc rgb '#e4e4e4'", "set format x '%g'", "set format y '%g'",
-        "set key below samplen 1.5 font ',10'", "set bmargin 6.5", "set border 3", "set tics nomirror"]
+        "set key below samplen 1.5 font ',10'", "set bmargin 8", "set border 3", "set tics nomirror"]
 
 
 def draw(folder, rows, reference_file, bits, report_progress):

@@ -15,9 +15,9 @@ report:  ## speed against accuracy: tables, charts and a page in build/report (R
 .PHONY: report report-run
 
 # The walks run under the sanitizers: no axis may end in a write outside or undefined behaviour.
-STABILITY_SRCS := tools/report/stability.c $(filter-out tools/% host_tests/accuracy/scene_measure.c host_tests/accuracy/standard_measure.c,$(JUDGE_SRCS)) \
+STABILITY_SRCS := $(addprefix tools/report/,stability.c walk.c more_axes.c rotations.c maps.c) host_tests/reference/exact.c $(filter-out tools/% host_tests/accuracy/scene_measure.c host_tests/accuracy/standard_measure.c,$(JUDGE_SRCS)) \
   $(filter-out src/scene/% src/display/%,$(CORE_SRCS))
-$(C)/%/stability: $(STABILITY_SRCS) tools/cycles/cases.h $(wildcard include/edgewalk/*.h host_tests/*/*.h fixed/*.inc src/*/*.h)
+$(C)/%/stability: $(STABILITY_SRCS) tools/cycles/cases.h $(wildcard tools/report/*.h include/edgewalk/*.h host_tests/*/*.h fixed/*.inc src/*/*.h)
 	@mkdir -p $(@D); echo "CC $@"
 	@$(CC) $(HOST_CFLAGS) -g -fsanitize=address,undefined -fno-sanitize-recover=all -include assert.h '-DEW_ASSERT=assert' \
 	  -DEW_TRACE=1 -DEW_RECIP_BITS=$* -o $@ $(filter %.c,$^) -lm
@@ -29,8 +29,15 @@ ATLAS = mkdir -p $(REPORT) && PYTHONDONTWRITEBYTECODE=1 $(PYTHON) tools/report/a
 stability-run: $(STABILITY)
 	@$(ATLAS)
 # The report shows limits that disagree, and does not stop at them.
-report-run: $(call bench_images,$(REPORT_BITS)) $(foreach b,$(REPORT_BITS),$(C)/$(b)/judge) $(STABILITY)
+report-atlas: $(STABILITY)
 	@$(ATLAS) >$(C)/stability.log || [ $$? = 1 ] || { cat $(C)/stability.log; exit 2; }
+report-size:
+	@mkdir -p $(REPORT) $(C)
+	@PYTHONDONTWRITEBYTECODE=1 $(PYTHON) host_tests/static/size.py --build build/size --base none --report $(REPORT) >$(C)/size.log
+report-worst: $(BIN)/search_worst
+	@mkdir -p $(REPORT)
+	@$(BIN)/search_worst --tries 3000 >$(REPORT)/worst.txt || [ $$? = 1 ] || exit 2
+report-run: $(call bench_images,$(REPORT_BITS)) $(work_images) $(foreach b,$(REPORT_BITS),$(C)/$(b)/judge) report-atlas report-size report-worst
 	@PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=tools/cycles $(PYTHON) tools/report/report.py --build $(C) --out $(REPORT) \
 	  --bits "$(REPORT_BITS)" --scenes "$(foreach s,$(COUNT_SCENES),$(s)=$(B)/scenes/$(s).ewb)" $(COUNT_TARGETS)
-.PHONY: stability stability-run
+.PHONY: stability stability-run report-atlas report-size report-worst

@@ -1,9 +1,10 @@
 /* Holds every picture that tools/cycles counts against the referee: one line of figures for each.
  *
- *   judge [--pictures DIR] NAME=FILE.ewb ...
+ *   judge [--pictures DIR | --method NAME] NAME=FILE.ewb ...
  *
- * Without --pictures all cases are judged, in the order of the bench. With it only the default
- * method of each scene is drawn, into PNG files: reference, ours, difference and error maps. */
+ * Without an option all cases are judged, in the order of the bench, with --method only those of that method.
+ * With --pictures only the default method of each scene is drawn, into PNG files: reference, ours, difference
+ * and error maps. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,15 +31,15 @@ typedef struct judged_scene {
 static uint16_t colour[PIXELS], depth[PIXELS];
 static const ew_target target = { .colour = colour, .depth = depth, .width = W, .height = H, .stride = W };
 
-static int draw(const judged_scene *s, ew_rung rung, uint16_t tolerance, measures *m)
+static int draw(const judged_scene *s, ew_rung rung, uint16_t tolerance, const ew_cost *cost, measures *m)
 {
     int error;
     if (s->player) {
         ew_scene_camera camera;
         ew_scene_get_camera(ew_player_scene(s->player), &camera);
-        error = measure_scene(ew_player_scene(s->player), &camera, BENCH_TIME_MS, &target, BACKGROUND, tolerance, rung, m);
+        error = measure_scene(ew_player_scene(s->player), &camera, BENCH_TIME_MS, &target, BACKGROUND, tolerance, rung, cost, m);
     } else {
-        error = measure_standard(s->name[0], rung, tolerance, &target, BACKGROUND, m);
+        error = measure_standard(s->name[0], rung, tolerance, cost, &target, BACKGROUND, m);
     }
     if (error) fprintf(stderr, "%s: %s: cannot draw the scene: %s\n", tool, s->name, ew_error_text(error));
     return error;
@@ -69,23 +70,35 @@ static uint32_t hash(void)
     return h;
 }
 
-static int judge_all(const judged_scene *scenes, int count)
+static int judge_case(const judged_scene *s, const char *name, const bench_method *method, uint16_t tolerance, const ew_cost *cost)
 {
+    measures m;
+    if (draw(s, method->rung, tolerance, cost, &m)) return 1;
+    printf("%s,%s,%g,%ld,%ld,%ld,%ld,%.6g,%.6g,%ld,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%08x\n", s->name, name, tolerance / 16.0,
+           m.fragments, m.textured, m.wrong_px, m.double_hits, m.disp_max, m.disp_rms, m.within_e, m.u_max, m.u_rms, m.v_max, m.v_rms,
+           m.depth_max, m.depth_rms, bound(method, tolerance, &m), hash());
+    return 0;
+}
+
+static int judge_all(const judged_scene *scenes, int count, const char *only)
+{
+    static const bench_method automatic = { "auto", EW_RUNG_AUTO, 1, BOUND_TOLERANCE, 0 };
     const bench_method *method;
     uint16_t tolerance;
+    int failed = 0;
     printf("scene,method,tolerance_px,fragments,textured,wrong_px,double_hits,disp_max_px,disp_rms_px,within_e,u_max,u_rms,"
            "v_max,v_rms,depth_max_lsb,depth_rms_lsb,bound_px,picture\n");
-    for (int s = 0; s < count; s++) {
-        for (int i = 0; bench_case(i, &method, &tolerance); i++) {
-            measures m;
-            if (draw(&scenes[s], method->rung, tolerance, &m)) return 1;
-            printf("%s,%s,%g,%ld,%ld,%ld,%ld,%.6g,%.6g,%ld,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%08x\n", scenes[s].name,
-                   method->name, tolerance / 16.0, m.fragments, m.textured, m.wrong_px, m.double_hits, m.disp_max,
-                   m.disp_rms, m.within_e, m.u_max, m.u_rms, m.v_max, m.v_rms, m.depth_max, m.depth_rms,
-                   bound(method, tolerance, &m), hash());
+    for (int s = 0; s < count && !failed; s++) {
+        for (int i = 0; bench_case(i, &method, &tolerance) && !failed; i++) {
+            if (!only || strcmp(only, method->name) == 0) failed = judge_case(&scenes[s], method->name, method, tolerance, NULL);
+        }
+        for (int i = 0; i < BENCH_PROFILES * BENCH_TOLERANCES && !failed; i++) {
+            const bench_profile *p = &bench_profiles[i / BENCH_TOLERANCES];
+            tolerance = bench_tolerances[i % BENCH_TOLERANCES];
+            if (!only || strcmp(only, p->name) == 0) failed = judge_case(&scenes[s], p->name, &automatic, tolerance, p->cost);
         }
     }
-    return 0;
+    return failed;
 }
 
 /* ---- pictures ---- */
@@ -121,7 +134,7 @@ static int write_pictures(const judged_scene *s, const char *folder)
     measures m;
     long differing = 0;
     measure_want_maps(&maps);
-    if (draw(s, EW_RUNG_AUTO, MAP_TOLERANCE, &m)) return -1;
+    if (draw(s, EW_RUNG_AUTO, MAP_TOLERANCE, NULL, &m)) return -1;
     int failed = write_png(folder, s->name, "reference", reference) || write_png(folder, s->name, "ours", colour);
     for (int i = 0; i < PIXELS; i++) {
         int a = reference[i], b = colour[i];
@@ -143,12 +156,13 @@ int main(int argc, char **argv)
     enum { MOST = 16 };
     static judged_scene scenes[MOST];
     const char *folder = argc > 2 && strcmp(argv[1], "--pictures") == 0 ? argv[2] : NULL;
+    const char *only = argc > 2 && strcmp(argv[1], "--method") == 0 ? argv[2] : NULL;
     int count = 0, failed = 0;
     for (char name = 'A'; name <= 'E'; name++) scenes[count++].name[0] = name;
-    for (int i = folder ? 3 : 1; i < argc; i++) {
+    for (int i = folder || only ? 3 : 1; i < argc; i++) {
         const char *path = strchr(argv[i], '=');
         if (!path || count == MOST || path - argv[i] >= (int)sizeof scenes->name) {
-            fprintf(stderr, "usage: %s [--pictures DIR] NAME=FILE.ewb ...\n", tool);
+            fprintf(stderr, "usage: %s [--pictures DIR | --method NAME] NAME=FILE.ewb ...\n", tool);
             return 2;
         }
         memcpy(scenes[count].name, argv[i], (size_t)(path - argv[i]));
@@ -158,7 +172,7 @@ int main(int argc, char **argv)
     if (folder) {
         for (int i = 0; i < count && !failed; i++) failed = write_pictures(&scenes[i], folder) != 0;
     } else {
-        failed = judge_all(scenes, count);
+        failed = judge_all(scenes, count, only);
     }
     for (int i = 0; i < count; i++) {
         if (scenes[i].player) ew_player_close(scenes[i].player);

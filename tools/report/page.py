@@ -89,11 +89,11 @@ def accuracy(rows, bits):
 def auto_tables(auto, bits):
     counted = {}
     for row in auto:
-        states = counted.setdefault((row["target"], row["metric"]), [0, 0, 0])
+        states = counted.setdefault((row["target"], row["method"], row["metric"]), [0, 0, 0])
         states[2 if row["cheapest_by_bound"] == "na" else row["state"] == "over"] += 1
-    text = table(["target, counted by", "as cheap", "dearer", "nothing promised (table under 6 bits)"],
-                 [[f"{target}, {metric}", str(ok), f"<td class='over'>{over}</td>" if over else "0", str(none)]
-                  for (target, metric), (ok, over, none) in counted.items()])
+    text = table(["target, cost profile, counted by", "as cheap", "dearer", "nothing promised (table under 6 bits)"],
+                 [[f"{target}, {'generic' if method == tables.AUTO else 'its own'}, {metric}", str(ok), f"<td class='over'>{over}</td>" if over else "0", str(none)]
+                  for (target, method, metric), (ok, over, none) in counted.items()])
     over = [row for row in auto if row["state"] == "over" and row["recip_bits"] == bits]
     lines = [[f"{row['target']}, {row['scene']}, {row['method']} {row['tolerance_px']}, {row['metric']}", f"{float(row['auto_per_px']):.1f}",
               row["cheapest_by_bound"], short(row["by_bound_per_px"], 4), percent(row["over_by_bound"]), row["cheapest_measured"],
@@ -138,8 +138,72 @@ AXES = {
     "sliver_height_px": "height of slivers across the screen", "tiny_triangle_side_px": "side of the cells of a net of triangles",
     "span_px": "length of a span along which 1/z falls to 60 %", "uv_range_texels": "texels from corner to corner",
     "guard_half_width_px": "half the width of a triangle that stands over the screen",
+    "column_px": "height of a column along which 1/z falls to 60 %", "fan_spokes": "triangles of a fan around one point",
+    "uv_offset_texels": "how far from 0 the texture coordinates are", "texture_side_texels": "texels along a texture's side, odd ones too",
+    "grazing_degrees_nearest_level": "angle between a floor and the line of sight; mip levels by which the drawn one is off",
+    "grazing_degrees_trilinear": "the same, two levels blended",
+    "t_junction_edge_px": "length of an edge with another triangle's corner on its middle; holes and double hits of 4,000 such edges",
+    "picture_side_px": "pixels across and down, drawn whole and in bands: they must agree",
+    "coplanar_units_per_px": "slope in depth of a triangle drawn twice from other corners: pixels that the second one takes",
+    "crossing_units_per_px": "depth units per pixel at which two walls cross: pixels that show the farther one",
+    "floor_half_size_over_near": "size of a floor around the eye, over the near distance",
+    "slerp_angle_rad": "angle between two rotation keys", "slerp_short_of_half_turn_rad": "what that angle lacks to half a turn",
+    "slerp_key_length": "length of a key that is not normalised", "chain_length": "matrices in a chain",
+    "chain_of_10_to_4_length": "matrices in a chain that each scale by 10,000",
     "near_plane_z_over_near": "z of a floor's near corners over the near distance: at the eye and behind it too",
 }
+
+
+def charts_of(names):
+    return "".join(f"<figure><a href='charts/{name}.svg'>{image(f'charts/{name}.svg', text)}</a><figcaption>{text} "
+                   f"<a href='charts/{name}.png'>PNG</a></figcaption></figure>" for name, text in names)
+
+
+def work_section(fitted, frames, names):
+    lines = [[f"{row['target']}, per {row['unit']}", row["per_unit"], f"{int(row['constant']):,}", f"{row['from']:,} to {row['to']:,}",
+              percent(row["worst_off"]), row["exponent"]] for row in fitted]
+    worst = [[f"{row['target']}, {row['scene']}", str(row["frames"]), f"{int(row['mean_instructions']):,}", f"{int(row['worst_instructions']):,}",
+              str(row["worst_frame"]), "na" if row["mean_cycles"] == "na" else f"{int(row['mean_cycles']):,}",
+              "na" if row["worst_cycles"] == "na" else f"{int(row['worst_cycles']):,}", row["worst_over_mean"]] for row in frames]
+    return f"""<p>One thing grows, the rest stays; automatic choice at 1/4 pixel. A straight line is laid through each sweep, with the least
+relative squares: what one more costs, what is there without any, and how far the line is off at worst. The exponent is the slope on
+logarithmic axes between the two largest steps: 1 is proportional, 0 free. Textures of more than 256 x 256 texels leave the fastest
+loop, so the lines over texels end there; the chart shows the step. <a href="work.csv">work.csv</a>,
+<a href="work_slopes.csv">work_slopes.csv</a></p>
+{table(["instructions, target", "for one more", "at none", "from, to", "line off by", "exponent"], lines)}
+<p>Frames of the sample scenes over one round of their animation, as <code>ew_scene_draw</code> draws them, with the materials as baked: a
+display's rate hangs on the worst frame, not on the mean. <a href="frames.csv">frames.csv</a></p>
+{table(["target, scene", "frames", "mean instructions", "worst", "frame", "mean cycles", "worst", "worst / mean"], worst)}
+<div class="grid">{charts_of(names)}</div>"""
+
+
+def size_section(sizes, stacks, names):
+    builds = list(dict.fromkeys(build for build, _ in sizes))
+    lines = [[configuration] + [f"{sizes[build, configuration]:,} <span class='soft'>({stacks[build, configuration]:,})</span>" for build in builds]
+             for configuration in dict.fromkeys(configuration for _, configuration in sizes)]
+    return f"""<p>Bytes of code and tables as linked from a configuration's public functions, compiler helpers included, and in brackets
+the deepest stack that any of them reaches, from the compiler's call graphs. The dashed line is the limit of 512 bytes.
+<a href="size.csv">size.csv</a>, <a href="stack.csv">stack.csv</a></p>{table(["", *builds], lines)}<div class="grid">{charts_of(names)}</div>"""
+
+
+MAPS = {
+    "depth_ratio_and_run_length": "An affine run: its length, and how much farther away its far end is.",
+    "recip_bits_and_uv_range": "The reciprocal table's size against the texels that a triangle spans.",
+    "distance_and_separation": "Two walls, one before the other: how far apart 16-bit depth needs them to be.",
+    "slerp_angle_and_key_bits": "Rotation keys: the angle between two, and their bits. Below the line keys cannot tell the angle from none.",
+    "slerp_half_turn_and_key_bits": "Keys nearly half a turn apart: below the line rounding decides which way is the shorter.",
+}
+
+
+def worst_triangles(out):
+    with open(os.path.join(out, "worst.txt"), encoding="utf-8") as f:
+        found = f.read()
+    lines = [[row.split('"')[1], row.rsplit("/*", 1)[1].strip(" */\n")] for row in found.splitlines() if row.startswith("{")]
+    lines = [[way, f"<td class='over'>{used}</td>" if float(used) > 1 else used] for way, used in lines]
+    return f"""<h3>The worst triangle for each method</h3><p>A seeded random search, climbing from the worst of some triangles to worse ones.
+How much of its promise the worst fragment uses: up to 0 it lies within the disc of the tolerance, from there on it is the part of
+e = 1/64 texel that is needed besides; above 1 the promise is broken. Depth: units off, of the 1 that is allowed.</p>
+{table(["method", "uses"], lines)}<details><summary>The triangles, as rows of the list that a test replays</summary><pre>{html.escape(found)}</pre></details>"""
 
 
 def stability(out):
@@ -158,7 +222,10 @@ beyond the promise, or beyond 1/4 pixel for the affine method and fixed runs), {
 circles degraded, crosses refused; a dashed line is where a formula predicts the limit. <a href="stability.csv">stability.csv</a></p>
 <p>Predicted limits beside measured ones; they agree within a factor of {atlas.FACTOR:g}:</p>
 {table(["axis, method", "predicted", "measured", ""], lines)}
-<div class="grid">{figures}</div>"""
+<div class="grid">{figures}</div>
+<h3>Two at a time</h3><p>Each cell is measured; the black line is where the formula puts the limit. <a href="maps.csv">maps.csv</a></p>
+<div class="grid">{charts_of([(f"map-{name}", text) for name, text in MAPS.items()])}</div>
+{worst_triangles(out)}"""
 
 
 HOW = """
@@ -195,7 +262,7 @@ def check_images(out, text):
             raise tables.Failed(f"{path}: the page shows it, and it is not there")
 
 
-def write(out, rows, auto, names, differing, bits, versions):
+def write(out, rows, auto, names, differing, bits, worked, versions):
     scenes = list(dict.fromkeys(row["scene"] for row in rows))
     text = f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
@@ -203,7 +270,8 @@ def write(out, rows, auto, names, differing, bits, versions):
 <h1>edgewalk: speed against accuracy</h1>
 <p>edgewalk is a fixed-point 3D rasterizer for microcontrollers that is told how much error a scene can bear and does no more work
 than that. This page shows what each way of drawing a texture costs on six processors, and how far from the truth it is.</p>
-<nav><a href="#cost">Cost</a> <a href="#accuracy">Accuracy</a> <a href="#auto">The automatic choice</a> <a href="#stability">Where methods fail</a>
+<nav><a href="#cost">Cost</a> <a href="#accuracy">Accuracy</a> <a href="#auto">The automatic choice</a> <a href="#work">Cost against work</a>
+<a href="#size">Flash and stack</a> <a href="#stability">Where methods fail</a>
 {" ".join(f'<a href="#scene-{scene}">Scene {scene}</a>' for scene in scenes)} <a href="#how">How it was measured</a></nav>
 
 <h2 id="cost">What a picture costs</h2>
@@ -215,14 +283,22 @@ reciprocal table of {bits} bits (the default). 320 x 240 pixels, RGB565, 16-bit 
 
 <h2 id="accuracy">How far from the truth</h2>
 <p>Against the referee, the same on every target. Methods: one linear map over the whole triangle (affine) or over runs of 8, 16 or 32
-pixels, runs as long as the bound allows (runs), a reciprocal for each pixel from the table (table) or refined (exact), and the automatic choice.</p>
+pixels, runs as long as the bound allows (runs), a reciprocal for each pixel from the table (table) or refined (exact), and the automatic choice by the generic costs (auto) or by those
+of the processor at hand (auto host and its like).</p>
 {accuracy(rows, bits)}
 
 <h2 id="auto">The automatic choice against the cheapest</h2>
 <p>The automatic choice should cost no more than 5 % above the cheapest single method whose bound holds the tolerance for the
-whole scene, and no more than 10 % above the cheapest that only turned out to keep it. Counted over all scenes, tolerances and
+whole scene, and no more than 10 % above the cheapest that only turned out to keep it. It goes by a cost profile, data that says
+what a run and a pixel cost: the generic one is the same everywhere, and each target has one of its own beside it. Counted over all scenes, tolerances and
 table sizes; <a href="auto.csv">auto.csv</a> names both for every case.</p>
 {auto_tables(auto, bits)}
+
+<h2 id="work">Cost against work</h2>
+{work_section(worked[0], worked[1], worked[4])}
+
+<h2 id="size">Flash and stack</h2>
+{size_section(worked[2], worked[3], worked[5])}
 
 <h2>Scenes</h2>
 <p>The error maps' colours: grey is a pixel without a texture to judge.</p>
@@ -238,6 +314,7 @@ table sizes; <a href="auto.csv">auto.csv</a> names both for every case.</p>
 <p>Made with:</p><pre>{html.escape(chr(10).join(f"{target}: {text}" for target, text in versions.items()))}</pre>
 <pre>make report            # this page, its tables and charts
 make stability         # where methods fail
+make worst             # the search for the worst triangles, longer
 make count             # the counts of the default table on a terminal
 make check-counts      # fails where a count has grown by more than 1 %</pre>
 </body></html>

@@ -13,11 +13,13 @@ import os
 import sys
 import time
 
+import atlas
 import baseline
 import charts
 import count
 import page
 import tables
+import work
 
 
 class Progress:
@@ -44,27 +46,31 @@ def judge(build, bits, scenes):
 
 
 def measure(args, progress):
-    """Rows of speed_accuracy for every size of the table, and of memory for the first."""
-    cases, rows, memory = count.list_cases(args.build), [], []
+    """Rows of speed_accuracy for every size of the table, {size: what was judged}, rows of memory for the first, rows of work."""
+    cases, rows, judged, memory = count.list_cases(args.build), [], {}, []
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         names, jobs = {}, {}
         for bits in args.bits:
             jobs[bits, "judged"] = pool.submit(judge, args.build, bits, args.scenes)
             for target in args.targets:
                 jobs[bits, target] = pool.submit(count.count, args.build, bits, target, cases)
+        for target in work.targets_of(args.targets):
+            jobs["work", target] = pool.submit(work.count_target, args.build, target)
         names = {job: key for key, job in jobs.items()}
         try:
             for job in concurrent.futures.as_completed(names):
                 job.result()
-                progress.step(f"{names[job][1]}, table of {names[job][0]} bits")
+                progress.step(" ".join(map(str, names[job])))
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
         for bits in args.bits:
             counts = {target: jobs[bits, target].result() for target in args.targets}
-            rows += tables.speed_accuracy(bits, jobs[bits, "judged"].result(), cases, counts)
+            judged[bits] = jobs[bits, "judged"].result()
+            rows += tables.speed_accuracy(bits, judged[bits], cases, counts)
             memory = memory or count.memory_rows(cases, counts)
-    return rows, memory
+    worked = work.rows_of(args.build, {target: jobs["work", target].result() for target in work.targets_of(args.targets)})
+    return rows, judged, memory, worked
 
 
 def draw_pictures(args, bits):
@@ -84,30 +90,48 @@ def main():
     parser.add_argument("targets", nargs="+", choices=count.TARGETS)
     args = parser.parse_args()
     default = count.DEFAULT_BITS if count.DEFAULT_BITS in args.bits else args.bits[-1]
-    progress = Progress(len(args.bits) * (len(args.targets) + 1) + 2)
-    rows, memory = measure(args, progress)
+    progress = Progress(len(args.bits) * (len(args.targets) + 1) + len(work.targets_of(args.targets)) + 2)
+    rows, judged, memory, worked = measure(args, progress)
     auto = list(tables.auto_rows(rows))
     tables.write(os.path.join(args.out, "speed_accuracy.csv"), tables.COLUMNS, rows)
     tables.write(os.path.join(args.out, "cycles.csv"), tables.CYCLE_COLUMNS, tables.cycle_rows(rows))
     count.write_memory(os.path.join(args.out, "memory.csv"), memory)
     tables.write(os.path.join(args.out, "auto.csv"), tables.AUTO_COLUMNS, auto)
+    fitted, frames, sizes = list(work.fits(worked)), list(work.frames(worked)), work.read_sizes(args.out)
+    tables.write(os.path.join(args.out, "work.csv"), work.COLUMNS, worked)
+    tables.write(os.path.join(args.out, "work_slopes.csv"), work.FIT_COLUMNS, fitted)
+    tables.write(os.path.join(args.out, "frames.csv"), work.FRAME_COLUMNS, frames)
     here = os.path.dirname(os.path.abspath(__file__))
     names = charts.draw(os.path.join(args.out, "charts"), rows, os.path.join(here, "references.csv"), default, progress.say)
+    work_names = work.draw(os.path.join(args.out, "charts"), worked, *sizes)
     progress.step("pictures")
     differing = draw_pictures(args, default)
-    page.write(args.out, rows, auto, names, differing, default, {target: baseline.versions(target) for target in args.targets})
+    page.write(args.out, rows, auto, names, differing, default, (fitted, frames, *sizes, *work_names), {target: baseline.versions(target) for target in args.targets})
     progress.step("page")
     progress.end()
-    over = sum(row["state"] == "over" for row in auto)
-    beyond = {(row["recip_bits"], row["scene"], tables.label(row)) for row in rows if row["beyond"]}
-    for bits, scene, label in sorted(beyond):
-        print(f"report: scene {scene}, {label}, table of {bits} bits: displaced beyond its bound")
-    print(f"report: {args.out}/index.html; {len(rows)} rows of speed_accuracy.csv; auto: {len(auto) - over} of {len(auto)} "
-          "as cheap as the cheapest rung, within 5 % of what the bound allows and 10 % of what measures so")
+    say(args.out, rows, judged, auto)
+
+
+def say(out, rows, judged, auto):
+    """What was promised and is not so, a line each, and a summary."""
+    over = [row for row in auto if row["state"] == "over"]
+    for bits, of_size in judged.items():
+        for j in filter(tables.beyond, of_size):
+            print(f"report: beyond its bound: table of {bits} bits, scene {j['scene']}, {j['method']} {j['tolerance_px']}: "
+                  f"{j['disp_max_px']} px, bound {j['bound_px']} px")
+    for row in over:
+        print(f"report: auto is dearer: {row['target']}, table of {row['recip_bits']} bits, scene {row['scene']}, {row['method']} "
+              f"{row['tolerance_px']}: {row['auto_per_px']} {row['metric']}; {row['cheapest_by_bound']} {row['by_bound_per_px']} "
+              f"(by bound, {row['over_by_bound']}), {row['cheapest_measured']} {row['measured_per_px']} (measured, {row['over_measured']})")
+    for name in dict.fromkeys(row["method"] for row in auto):
+        own = [row for row in auto if row["method"] == name]
+        print(f"report: {name}: {sum(row['state'] == 'ok' for row in own)} of {len(own)} as cheap as the cheapest rung, within 5 % of "
+              "what the bound allows and 10 % of what measures so")
+    print(f"report: {out}/index.html; {len(rows)} rows of speed_accuracy.csv")
 
 
 if __name__ == "__main__":
     try:
         main()
-    except (count.Failed, tables.Failed, OSError) as e:
+    except (atlas.Failed, count.Failed, tables.Failed, OSError) as e:
         sys.exit(f"report.py: {e}")

@@ -9,135 +9,22 @@
  * promise, or beyond 1/4 px for the affine method and fixed runs; on the axes of texture range, u or v off by
  * more than e = 1/64 texel for methods that take no tolerance), ok.
  *
- * `--axes recip` walks only the axis that depends on the size of the reciprocal table. */
+ * `--only recip` walks only the axis that depends on the size of the reciprocal table, `--only maps` prints the
+ * cells of the heat maps instead, `--only recip-map` those of the map that depends on the table. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../host_tests/accuracy/measure.h"
-#include "../cycles/cases.h"
+#include "walk.h"
 
-enum { W = 320, H = 48, MARGIN = 64 };
-
-static const double promised[] = { 11.02, 12.97, 14.91, 16.53, 17.00, 17.00 }; /* include/edgewalk/fixed.h */
-static const double e = 1.0 / 64, snap = 1.0 / 256, no_limit = -1;
-
-/* A method at the tolerance of 1/4 px, if it takes one. */
-typedef struct pen {
-    const bench_method *method;
-    uint16_t tolerance;
-} pen;
-
-static uint16_t texels[256 * 256];
-
-/* ---- one picture ---- */
-
-typedef struct canvas {
-    ew_target target;
-    ew_raster raster;
-    uint16_t *memory[2];
-    int width, height, error;
-} canvas;
-
-/* Memory with a margin all round that drawing must leave alone: rows are longer than the picture. */
-static void begin(canvas *c, const pen *p, int width, int height, int log2_texture)
-{
-    size_t stride = (size_t)width + MARGIN, size = stride * (size_t)(height + 2);
-    memset(c, 0, sizeof *c);
-    c->width = width, c->height = height;
-    for (int k = 0; k < 2; k++) {
-        c->memory[k] = malloc(2 * size);
-        if (!c->memory[k]) abort();
-        memset(c->memory[k], 0xA5, 2 * size);
-    }
-    c->target = (ew_target){ .colour = c->memory[0] + stride, .depth = c->memory[1] + stride, .width = (uint16_t)width,
-                             .height = (uint16_t)height, .stride = (uint16_t)stride };
-    const uint16_t side = (uint16_t)(1u << log2_texture);
-    const ew_texture texture = { .texels = texels, .width = side, .height = side };
-    const ew_material material = { .texture = &texture, .tolerance = p->tolerance, .rung = p->method->rung,
-                                   .flags = EW_DOUBLE_SIDED };
-    const ref_camera eye = { 1, 1, 1, 0, 0, width, height };
-    c->error = ew_raster_init(&c->raster, &c->target);
-    ew_raster_clear(&c->raster, 0);
-    if (!c->error) c->error = ew_raster_set_material(&c->raster, &material);
-    measure_begin(&c->target, &eye, 0);
-}
-
-static void triangle(canvas *c, const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *d)
-{
-    const ew_raster_vertex *const v[3] = { a, b, d };
-    if (!c->error) c->error = measure_triangle(&c->raster, v);
-}
-
-static void quad(canvas *c, const ew_raster_vertex v[4])
-{
-    triangle(c, &v[0], &v[1], &v[2]);
-    triangle(c, &v[0], &v[2], &v[3]);
-}
-
-/* Returns what was measured; the margin's loss ends the program. */
-static measures end(canvas *c)
-{
-    measures m;
-    measure_end(&m, 0.125);
-    for (int k = 0; k < 2; k++) {
-        size_t stride = c->target.stride, rows = (size_t)c->height + 2;
-        for (size_t i = 0; i < stride * rows; i++) {
-            int inside = i % stride < (size_t)c->width && i / stride >= 1 && i / stride <= (size_t)c->height;
-            if (!inside && c->memory[k][i] != 0xA5A5) {
-                fprintf(stderr, "stability: written outside of the picture\n");
-                abort();
-            }
-        }
-        free(c->memory[k]);
-    }
-    return m;
-}
-
-static void print_row(const char *axis, const pen *p, double x, double err_px, double err_lsb, long wrong, double limit,
-                      const char *state)
-{
-    printf("%s,%s", axis, p->method->name);
-    if (p->method->takes_tolerance) printf(" %g", p->tolerance / 16.0);
-    printf(",%.6g,%.6g,%.6g,%ld,", x, err_px, err_lsb, wrong);
-    if (limit == no_limit) printf("na,%s\n", state);
-    else printf("%.6g,%s\n", limit, state);
-}
-
-/* Whether the method draws in lengths of its own, without asking how far that puts it off. */
-static int careless(const pen *p) { return p->method->bound == BOUND_AFFINE || p->method->bound == BOUND_RUN; }
-
-static double allowed(const pen *p)
-{
-    if (p->method->takes_tolerance) return p->tolerance / 16.0 + snap;
-    return careless(p) ? 0.25 + snap : snap;
-}
-
-static void report(const char *axis, const pen *p, double x, const canvas *c, const measures *m, long more_wrong, double limit)
-{
-    long wrong = m->wrong_px + m->double_hits + more_wrong;
-    int fine = wrong == 0 && m->disp_max <= allowed(p) && m->depth_off <= 1;
-    if (strncmp(axis, "uv_range", 8) == 0 && allowed(p) == snap) fine = fine && fmax(m->u_max, m->v_max) <= e;
-    print_row(axis, p, x, c->error ? 0 : m->disp_max, c->error ? 0 : m->depth_max, wrong, limit,
-              c->error ? "refused" : fine ? "ok" : "degraded");
-}
-
-static ew_raster_vertex at(double x, double y, double w, double u, double v)
-{
-    ew_raster_vertex r;
-    memset(&r, 0, sizeof r);
-    r.x = (ew_q20_12)lrint(x * 4096), r.y = (ew_q20_12)lrint(y * 4096);
-    r.w = (ew_uq1_31)fmax(1, fmin(rint(ldexp(w, 31)), 0x80000000));
-    r.u = (ew_q20_12)fmin(INT32_MAX, fmax(-INT32_MAX, rint(u * 4096))), r.v = (ew_q20_12)fmin(INT32_MAX, fmax(-INT32_MAX, rint(v * 4096)));
-    return r;
-}
+enum { W = 320, H = 48 };
 
 /* A quad over columns x0 to x1 with near/z = w0 on the left and w1 on the right. */
 static void wall(canvas *c, double x0, double x1, double y0, double y1, double w0, double w1, double u)
 {
-    const ew_raster_vertex v[4] = { at(x0, y0, w0, 0, 0), at(x0, y1, w0, 0, u), at(x1, y1, w1, u, u), at(x1, y0, w1, u, 0) };
-    quad(c, v);
+    const ew_raster_vertex v[4] = { walk_at(x0, y0, w0, 0, 0), walk_at(x0, y1, w0, 0, u), walk_at(x1, y1, w1, u, u), walk_at(x1, y0, w1, u, 0) };
+    walk_quad(c, v);
 }
 
 /* ---- axes ---- */
@@ -150,13 +37,13 @@ static void depth_ratio(const pen *p)
     const double run = p->method->run;
     const double limit = p->method->bound == BOUND_AFFINE ? pow((n + t) / (n - t), 2) - 1
                          : p->method->bound == BOUND_RUN  ? 4 * n * t / (run * run)
-                                                          : no_limit;
+                                                          : walk_no_limit;
     for (double x = 1e-4; x < 2e6; x *= 1.333521432163324) { /* 8 steps to a decade */
         canvas c;
-        begin(&c, p, W, H, 8);
+        walk_begin(&c, p, W, H, 256, 256);
         wall(&c, 40, 40 + n, 4, 44, 1, 1 / (1 + x), 200);
-        measures m = end(&c);
-        report("depth_ratio_less_1", p, x, &c, &m, 0, limit);
+        measures m = walk_end(&c);
+        walk_report("depth_ratio_less_1", p, x, &c, &m, 0, limit);
     }
 }
 
@@ -166,10 +53,10 @@ static void far_horizon(const pen *p)
     for (int k = 0; k <= 30; k++) {
         double w = ldexp(1, -k);
         canvas c;
-        begin(&c, p, W, H, 8);
+        walk_begin(&c, p, W, H, 256, 256);
         wall(&c, 40, 280, 4, 44, w, w / 2, 200);
-        measures m = end(&c);
-        report("far_horizon_near_over_z", p, w, &c, &m, 0, allowed(p) == snap ? ldexp(1, -16) : no_limit);
+        measures m = walk_end(&c);
+        walk_report("far_horizon_near_over_z", p, w, &c, &m, 0, walk_allowed(p) == walk_snap ? ldexp(1, -16) : walk_no_limit);
     }
 }
 
@@ -179,15 +66,15 @@ static void slivers(const pen *p)
     srand48(1);
     for (double height = 8; height > 0.0005; height /= 2) {
         canvas c;
-        begin(&c, p, W, H, 8);
+        walk_begin(&c, p, W, H, 256, 256);
         for (int i = 0; i < 100; i++) {
             double y = 4 + drand48() * (H - 16), slant = (drand48() - 0.5) * 8, w = 0.05 + 0.9 * drand48();
-            const ew_raster_vertex a = at(drand48(), y, w, 0, 0), b = at(319 + drand48(), y + slant, 0.9 * w, 250, 0);
-            const ew_raster_vertex d = at(160 * drand48(), y + height, w, 0, 100);
-            triangle(&c, &a, &b, &d);
+            const ew_raster_vertex a = walk_at(drand48(), y, w, 0, 0), b = walk_at(319 + drand48(), y + slant, 0.9 * w, 250, 0);
+            const ew_raster_vertex d = walk_at(160 * drand48(), y + height, w, 0, 100);
+            walk_triangle(&c, &a, &b, &d);
         }
-        measures m = end(&c);
-        report("sliver_height_px", p, height, &c, &m, 0, no_limit);
+        measures m = walk_end(&c);
+        walk_report("sliver_height_px", p, height, &c, &m, 0, walk_no_limit);
     }
 }
 
@@ -198,19 +85,19 @@ static void tiny_triangles(const pen *p)
         const double x0 = 10.37, y0 = 8.61, across = 96;
         int cells = (int)(across / side);
         canvas c;
-        begin(&c, p, 128, 120, 8);
+        walk_begin(&c, p, 128, 120, 256, 256);
         for (int j = 0; j < cells; j++) {
             for (int i = 0; i < cells; i++) {
                 ew_raster_vertex v[4];
                 for (int k = 0; k < 4; k++) {
                     double gx = i + (k == 2 || k == 3), gy = j + (k == 1 || k == 2);
-                    v[k] = at(x0 + gx * side, y0 + gy * side, 0.5 - gx * side / 1000, gx * side * 2, gy * side * 2);
+                    v[k] = walk_at(x0 + gx * side, y0 + gy * side, 0.5 - gx * side / 1000, gx * side * 2, gy * side * 2);
                 }
-                quad(&c, v);
+                walk_quad(&c, v);
             }
         }
-        measures m = end(&c);
-        report("tiny_triangle_side_px", p, side, &c, &m, m.hit_again, no_limit);
+        measures m = walk_end(&c);
+        walk_report("tiny_triangle_side_px", p, side, &c, &m, m.hit_again, walk_no_limit);
     }
 }
 
@@ -218,12 +105,12 @@ static void tiny_triangles(const pen *p)
 static void long_spans(const pen *p)
 {
     for (int n = 1; n <= 4096; n += n < 4 ? 1 : n / 2) {
-        const double limit = p->method->bound == BOUND_AFFINE ? 0.25 * (sqrt(1 / 0.6) + 1) / (sqrt(1 / 0.6) - 1) : no_limit;
+        const double limit = p->method->bound == BOUND_AFFINE ? 0.25 * (sqrt(1 / 0.6) + 1) / (sqrt(1 / 0.6) - 1) : walk_no_limit;
         canvas c;
-        begin(&c, p, n, 1, 8);
+        walk_begin(&c, p, n, 1, 256, 256);
         wall(&c, 0, n, 0, 1, 0.9, 0.54, n * 0.4);
-        measures m = end(&c);
-        report("span_px", p, n, &c, &m, 0, limit);
+        measures m = walk_end(&c);
+        walk_report("span_px", p, n, &c, &m, 0, limit);
     }
 }
 
@@ -231,12 +118,12 @@ static void long_spans(const pen *p)
 static void uv_range(const pen *p)
 {
     for (double u = 16; u <= 1 << 17; u *= 1.189207115002721) {
-        double limit = p->method->bound == BOUND_TABLE ? e * exp2(promised[EW_RECIP_BITS - 4]) : 32768;
+        double limit = p->method->bound == BOUND_TABLE ? walk_e * exp2(walk_promised[EW_RECIP_BITS - 4]) : 32768;
         canvas c;
-        begin(&c, p, W, H, 8);
+        walk_begin(&c, p, W, H, 256, 256);
         wall(&c, 40, 280, 4, 44, 0.9, 0.45, u);
-        measures m = end(&c);
-        report("uv_range_texels", p, u, &c, &m, 0, careless(p) ? no_limit : limit);
+        measures m = walk_end(&c);
+        walk_report("uv_range_texels", p, u, &c, &m, 0, walk_careless(p) ? walk_no_limit : limit);
     }
 }
 
@@ -246,12 +133,12 @@ static void recip_bits(const pen *p)
     char axis[40];
     snprintf(axis, sizeof axis, "uv_range_at_%d_bits", EW_RECIP_BITS);
     for (double u = 4; u <= 1 << 15; u *= 1.4142135623730951) {
-        double limit = p->method->bound == BOUND_TABLE ? e * exp2(promised[EW_RECIP_BITS - 4]) : no_limit;
+        double limit = p->method->bound == BOUND_TABLE ? walk_e * exp2(walk_promised[EW_RECIP_BITS - 4]) : walk_no_limit;
         canvas c;
-        begin(&c, p, W, H, 8);
+        walk_begin(&c, p, W, H, 256, 256);
         wall(&c, 40, 280, 4, 44, 0.9, 0.45, u);
-        measures m = end(&c);
-        report(axis, p, u, &c, &m, 0, limit);
+        measures m = walk_end(&c);
+        walk_report(axis, p, u, &c, &m, 0, limit);
     }
 }
 
@@ -260,12 +147,12 @@ static void guard_band(const pen *p)
 {
     for (double half = 256; half <= 1 << 19; half *= 1.189207115002721) {
         canvas c;
-        begin(&c, p, W, H, 8);
-        const ew_raster_vertex a = at(160 - half, -30, 0.5, -half / 300, 0), b = at(160 + half, -30, 0.4, half / 300, 0);
-        const ew_raster_vertex d = at(160, half, 0.5, 0, half / 300);
-        triangle(&c, &a, &b, &d);
-        measures m = end(&c);
-        report("guard_half_width_px", p, half, &c, &m, 0, p->method->bound == BOUND_AFFINE ? no_limit : (double)EW_GUARD_PX);
+        walk_begin(&c, p, W, H, 256, 256);
+        const ew_raster_vertex a = walk_at(160 - half, -30, 0.5, -half / 300, 0), b = walk_at(160 + half, -30, 0.4, half / 300, 0);
+        const ew_raster_vertex d = walk_at(160, half, 0.5, 0, half / 300);
+        walk_triangle(&c, &a, &b, &d);
+        measures m = walk_end(&c);
+        walk_report("guard_half_width_px", p, half, &c, &m, 0, p->method->bound == BOUND_AFFINE ? walk_no_limit : (double)EW_GUARD_PX);
     }
 }
 
@@ -283,24 +170,24 @@ static void depth_separation(const pen *p)
             memset(&m, 0, sizeof m);
             for (int i = 0; i < 64 && drawn < 1 << 20; i++) {
                 double w = (1 + i / 64.0) / distances[k];
-                begin(&c, p, 64, 4, 8);
-                const ew_raster_vertex v[4] = { at(0, 0, w, 0, 0), at(0, 4, w, 0, 0), at(64, 4, w * 0.97, 0, 0), at(64, 0, w * 0.97, 0, 0) };
-                quad(&c, v);
+                walk_begin(&c, p, 64, 4, 256, 256);
+                const ew_raster_vertex v[4] = { walk_at(0, 0, w, 0, 0), walk_at(0, 4, w, 0, 0), walk_at(64, 4, w * 0.97, 0, 0), walk_at(64, 0, w * 0.97, 0, 0) };
+                walk_quad(&c, v);
                 ew_raster_vertex n[4];
                 for (int j = 0; j < 4; j++) n[j] = v[j], n[j].w += (uint32_t)llrint(steps * 32768);
                 uint16_t *before = malloc(64 * 4 * 2);
                 if (!before) abort();
                 for (int y = 0; y < 4; y++) memcpy(before + 64 * y, c.target.depth + (size_t)y * c.target.stride, 128);
-                quad(&c, n);
+                walk_quad(&c, n);
                 for (int y = 0; y < 4; y++) {
                     for (int x = 0; x < 64; x++) lost += c.target.depth[(size_t)y * c.target.stride + (size_t)x] == before[64 * y + x];
                 }
                 drawn += 256;
                 free(before);
-                measures one = end(&c);
+                measures one = walk_end(&c);
                 m.depth_max = fmax(m.depth_max, one.depth_max);
             }
-            print_row(axis, p, steps, 0, m.depth_max, lost, 1, lost ? "degraded" : "ok");
+            walk_row(axis, p->method->name, steps, 0, m.depth_max, lost, 1, lost ? "degraded" : "ok");
         }
     }
 }
@@ -314,7 +201,7 @@ static void near_plane(const pen *p)
     static const int thousandths[] = { 4000, 2000, 1001, 1000, 999, 500, 100, 1, 0, -1, -500, -1000, -4000, -16000 };
     for (size_t k = 0; k < sizeof thousandths / sizeof *thousandths; k++) {
         canvas c;
-        begin(&c, p, W, H, 8);
+        walk_begin(&c, p, W, H, 256, 256);
         measures discarded;
         measure_end(&discarded, 0.125);
         const ref_camera eye = { 1, 1.5, 1, 0, 0, W, H };
@@ -342,8 +229,8 @@ static void near_plane(const pen *p)
             const ew_mesh mesh = { v, screen, NULL, indices, 6, 4 };
             c.error = measure_mesh(&geometry, exact, &mesh);
         }
-        measures m = end(&c);
-        report("near_plane_z_over_near", p, thousandths[k] / 1000.0, &c, &m, 0, no_limit);
+        measures m = walk_end(&c);
+        walk_report("near_plane_z_over_near", p, thousandths[k] / 1000.0, &c, &m, 0, walk_no_limit);
     }
 }
 
@@ -357,18 +244,26 @@ static void all_axes(const pen *p)
     uv_range(p);
     guard_band(p);
     near_plane(p);
+    more_axes_of(p);
     if (p->method->rung == EW_RUNG_EXACT) depth_separation(p); /* depth does not depend on the rung */
 }
 
 int main(int argc, char **argv)
 {
-    int only_recip = argc == 3 && strcmp(argv[1], "--axes") == 0 && strcmp(argv[2], "recip") == 0;
-    if (argc != 1 && !only_recip) {
-        fprintf(stderr, "usage: stability [--axes recip]\n");
+    const char *what = argc == 3 && strcmp(argv[1], "--only") == 0 ? argv[2] : "";
+    const int only_recip = strcmp(what, "recip") == 0, recip_map = strcmp(what, "recip-map") == 0, all_maps = strcmp(what, "maps") == 0;
+    if (argc != 1 && !only_recip && !recip_map && !all_maps) {
+        fprintf(stderr, "usage: stability [--only recip|recip-map|maps]\n");
         return 2;
     }
-    for (int i = 0; i < 256 * 256; i++) texels[i] = (uint16_t)((unsigned)i * 40503u >> 3);
-    if (!only_recip) printf("axis,method,x,err_px,err_lsb,wrong_px,predicted_limit,state\n");
+    if (recip_map || all_maps) {
+        maps(recip_map);
+        return 0;
+    }
+    if (!only_recip) {
+        printf("axis,method,x,err_px,err_lsb,wrong_px,predicted_limit,state\n");
+        more_axes();
+    }
     for (int i = 0; i < BENCH_METHODS; i++) {
         const pen p = { &bench_methods[i], bench_methods[i].takes_tolerance ? 4 : 0 };
         if (!only_recip) all_axes(&p);

@@ -9,7 +9,7 @@ set -eu
 demo="gcc g++ libc6-dev pkg-config python3 libtinygltf-dev libhidapi-dev libgpiod-dev libpng-dev"
 test="$demo libcmocka-dev assimp-testmodels libosmesa6-dev"
 count="$demo valgrind gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm qemu-system-misc"
-report="$count gnuplot-nox fonts-dejavu-core"
+report="$count gnuplot-nox fonts-dejavu-core libcmocka-dev"
 cross="gcc-arm-none-eabi gcc-riscv64-unknown-elf gcc-avr"
 lint="gcc libc6-dev cppcheck clang-tidy libcmocka-dev libosmesa6-dev"
 firmware="$demo clang $cross avr-libc qemu-system-arm qemu-system-misc simavr"
