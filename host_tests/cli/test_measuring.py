@@ -187,6 +187,7 @@ class Atlas(unittest.TestCase):
 
     def test_cells_of_a_map_meet(self):
         self.assertEqual(atlas.edges([0, 1, 2]), [-0.5, 0.5, 1.5, 2.5])
+        self.assertEqual(atlas.edges([8]), [7.5, 8.5])
 
     def test_limits(self):
         for states, predicted, measured, verdict in (

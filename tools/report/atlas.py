@@ -5,7 +5,7 @@ a heat map for each pair, and holds the measured limits against the predicted on
 usage: atlas.py --out DIR PROGRAM ...     (the first walks all axes, the others the table's)
 
 A limit is measured as the last step that was ok before the first that was not; it has to lie
-within a factor of 1.5 of the predicted one. Exit status 1 when one does not.
+within a factor of 1.5 of the predicted one. Exit status 3 when one does not.
 """
 import argparse
 import concurrent.futures
@@ -134,6 +134,8 @@ def draw(folder, rows):
 
 def edges(values):
     """Between the values of an axis, and half a step beyond its ends, in log10 (bits as they are)."""
+    if len(values) == 1:
+        return [values[0] - 0.5, values[0] + 0.5]
     steps = [(b - a) / 2 for a, b in zip(values, values[1:])]
     return [values[0] - steps[0], *(a + s for a, s in zip(values, steps)), values[-1] + steps[-1]]
 
@@ -211,7 +213,7 @@ def main():
     states = [row["state"] for row in rows]
     print(f"stability: {path}: {len(rows)} steps, " + ", ".join(f"{states.count(s)} {s}" for s in ("ok", "degraded", "refused")) +
           f"; {wrong} limits disagree")
-    return 1 if wrong else 0
+    return 3 if wrong else 0
 
 
 if __name__ == "__main__":
