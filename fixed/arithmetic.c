@@ -20,7 +20,7 @@ int64_t ew_mul_s32_pieces(int32_t a, int32_t b)
 {
     /* a = u - 2^32 for negative ones: b 2^32 less, modulo 2^64 */
     uint64_t p = ew_mul_u32_pieces((uint32_t)a, (uint32_t)b);
-    uint32_t high = (uint32_t)(p >> 32) - ((uint32_t)b & (uint32_t)EW_ASR(a, 31)) - ((uint32_t)a & (uint32_t)EW_ASR(b, 31));
+    uint32_t high = (uint32_t)(p >> 32) - (a < 0 ? (uint32_t)b : 0u) - (b < 0 ? (uint32_t)a : 0u);
     return (int64_t)((uint64_t)high << 32 | (uint32_t)p);
 }
 
