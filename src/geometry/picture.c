@@ -79,7 +79,8 @@ size_t ew_picture_bytes(const ew_picture *picture, const ew_object *objects, uin
     const uint32_t most = SIZE_MAX < INT32_MAX ? (uint32_t)SIZE_MAX : INT32_MAX;
     if (plan.least > most - AND) return (size_t)plan.least;
     const uint32_t fit = (most - AND - plan.least) / OF_ACTIVE;
-    return (size_t)(plan.least + AND + (active < fit ? active : fit) * OF_ACTIVE);
+    const uint32_t bytes = plan.least + AND + (active < fit ? active : fit) * OF_ACTIVE; /* <= most */
+    return (size_t)bytes;
 }
 
 /* The first thing in the memory. */
