@@ -136,7 +136,8 @@ typedef struct ew_move {
 typedef struct ew_run_limit {
     uint32_t scale;
     uint32_t fall;    /* tolerance, 1/16 px, where w falls                                */
-    int32_t longest, shortest; /* shortest: 4 t                                           */
+    int32_t longest;
+    int32_t tolerance; /* 1/16 px                                                         */
     int down;
 } ew_run_limit;
 

@@ -23,7 +23,7 @@ EW_ALWAYS_INLINE uint32_t ew_root16(uint32_t product, int exponent)
 /* The bound allows N^2 |dw| <= 4 t w for a run of N pixels, with w at its far end: with w at its
  * first pixel and q = 4 t w / |dw|, N^2 <= q where w grows along the run and N^2 + 4 t N <= q
  * where it falls. Twice within a run is as far as w may grow or fall, for the run's slope to be a
- * number of 32 bits: N >= 4 t. */
+ * number of 32 bits: N <= w / |dw| = q / 4 t, which only asks for more where N < 4 t. */
 
 /* Whether a span of n pixels, at most EW_LONGEST_RUN, may be one run. */
 EW_ALWAYS_INLINE int ew_one_run_suffices(const ew_triangle *t, uint32_t w, uint32_t dw, int align, int32_t n)
@@ -45,7 +45,7 @@ EW_ALWAYS_INLINE void ew_run_limit_init(ew_run_limit *limit, const ew_triangle *
     limit->scale = t->run_scale;
     limit->fall = (int32_t)dw < 0 ? (uint32_t)tolerance : 0;
     limit->longest = t->longest;
-    limit->shortest = (tolerance + 3) / 4;
+    limit->tolerance = tolerance;
     limit->down = down < 0 ? 0 : down > 31 ? 31 : down; /* w' has bits enough for 256 px at 0 */
 }
 
@@ -61,7 +61,8 @@ EW_ALWAYS_INLINE int32_t ew_run_next(const ew_run_limit *limit, uint32_t w, int3
     const uint32_t q = (w >> 15) * limit->scale >> limit->down;
     while (n < limit->longest && ew_run_fits(limit, q, n + 1)) n++;
     while (!ew_run_fits(limit, q, n)) n--;
-    return n < limit->shortest ? 0 : n;
+    /* below 4 t: n <= w / |dw| = q / 4 t, and n^2 <= q */
+    return 4 * n < limit->tolerance ? 4 * n * n / limit->tolerance : n;
 }
 
 EW_ALWAYS_INLINE int32_t ew_run_first(const ew_run_limit *limit, uint32_t w)

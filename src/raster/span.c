@@ -213,6 +213,12 @@ EW_NOINLINE int32_t runs_of_texture(ew_packing *k, const ew_triangle *t, ew_span
     }
 }
 
+/* A function of its own: pixels_of_texture needs its registers. */
+EW_NOINLINE int32_t next_run(const ew_span_work *span, int32_t n)
+{
+    return ew_run_next(&span->limit, span->linear.w, n);
+}
+
 /* All that are left of the piece, or as many as there may be before the next look whether a run
  * pays. */
 static int32_t pixels_at_once(const ew_triangle *t, const ew_span_work *span)
@@ -237,10 +243,9 @@ EW_NOINLINE int32_t pixels_of_texture(ew_packing *k, const ew_triangle *t, ew_sp
 #else
     const uint16_t *texels = k->texels;
     const int log2_width = k->log2_width, u_down = 32 - log2_width, v_down = 32 - k->log2_height;
-    uint32_t w = l->w, u = l->u, v = l->v;
-    for (int32_t i = 0; i < n; i++, w += l->dw, u += l->du, v += l->dv) {
-        uint32_t depth = pen->w >> 15;
-        pen->w += pen->dw;
+    uint32_t w = l->w, u = l->u, v = l->v, z = pen->w;
+    for (int32_t i = 0; i < n; i++, z += pen->dw, w += l->dw, u += l->du, v += l->dv) {
+        uint32_t depth = z >> 15;
         if (depth <= pen->depth[i]) continue;
         divisor d = divisor_of(w, t->newton);
         uint32_t column = ((over_w(u, d) << t->u_shift) + t->u_base) >> u_down;
@@ -249,10 +254,11 @@ EW_NOINLINE int32_t pixels_of_texture(ew_packing *k, const ew_triangle *t, ew_sp
         pen->colour[i] = texels[(row << log2_width) + column];
     }
     pen->depth += n, pen->colour += n;
+    pen->w = z;
     l->w = w, l->u = u, l->v = v;
 #endif
     move(l, &span->by, 1, 2);
-    return span->left ? ew_run_next(&span->limit, l->w, n) : 0;
+    return span->left ? next_run(span, n) : 0;
 }
 
 /* A piece of a span, of at most EW_LONGEST_RUN pixels. */
