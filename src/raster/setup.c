@@ -273,7 +273,8 @@ static uint16_t longest_of(const ew_triangle *t, const ew_raster *raster)
     if (t->rung == EW_RUNG_RUNS_32) return 32;
     if (raster->texture.levels > 1) return 16; /* the level of a mip chain is a run's */
     /* a slope is off by at most half a unit: over the longest run by 1/128 texel */
-    return EW_FRACTION(t->uv_bits) < 15 ? (uint16_t)(UINT32_C(1) << (EW_FRACTION(t->uv_bits) - 6)) : EW_LONGEST_RUN;
+    const int fraction = EW_FRACTION(t->uv_bits);
+    return (uint16_t)(fraction < 15 ? UINT32_C(1) << (fraction - 6) : EW_LONGEST_RUN);
 }
 
 static void runs_init(ew_triangle *t, const ew_raster *raster, uint32_t w_min)
