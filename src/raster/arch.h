@@ -1,6 +1,6 @@
 /* What compilers do not find by themselves, per architecture (private to the raster layer).
- * Each macro has a twin in C that gives the same bits; EW_PORTABLE selects the twins, and the
- * tests compare both (docs/porting.md). */
+ * Each macro has a twin in C that gives the same bits; EW_PORTABLE selects the twins. The host
+ * draws with them, boards without: `make firmware-test` compares their hashes. */
 #ifndef EW_RASTER_ARCH_H
 #define EW_RASTER_ARCH_H
 
