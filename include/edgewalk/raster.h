@@ -151,7 +151,7 @@ typedef struct ew_colour888 {
 typedef struct ew_raster_vertex {
     ew_q20_12 x, y;  /* px, |x|, |y| <= EW_GUARD_PX                                        */
     ew_uq1_31 w;     /* near/z, 0 < w <= 2^31                                              */
-    ew_q20_12 u, v;  /* texels                                                            */
+    ew_q20_12 u, v;  /* texels, |u| and |v| below 2^18; within 32,768 of the other corners  */
     ew_colour888 colour; /* with EW_SHADED only                                            */
 } ew_raster_vertex;
 
