@@ -80,6 +80,7 @@ include host_tests/property/dir.mk
 include host_tests/mesa/dir.mk
 include host_tests/fuzz/dir.mk
 include host_tests/static/dir.mk
+include host_tests/prove/dir.mk
 
 # ---- goals ----
 accuracy: $(T)/test_accuracy  ## the referee's figures for the standard scenes, rung by rung

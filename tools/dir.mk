@@ -12,6 +12,6 @@ include tools/lab/dir.mk
 include tools/cycles/dir.mk
 include tools/report/dir.mk
 
-setup-demo setup-test setup-lab setup-count setup-report setup-firmware setup-cross setup-lint: setup-%:  ## install the packages of that goal
+setup-demo setup-test setup-lab setup-count setup-report setup-firmware setup-cross setup-lint setup-prove: setup-%:  ## install the packages of that goal
 	@SETUP=$(SETUP) tools/setup/setup.sh $*
-.PHONY: setup-demo setup-test setup-lab setup-count setup-report setup-firmware setup-cross setup-lint
+.PHONY: setup-demo setup-test setup-lab setup-count setup-report setup-firmware setup-cross setup-lint setup-prove

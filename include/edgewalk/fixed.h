@@ -119,7 +119,7 @@ static inline int ew_clz32(uint32_t x)
 }
 static inline int ew_clz64(uint64_t x)
 {
-    return x >> 32 ? ew_clz32((uint32_t)(x >> 32)) : 32 + ew_clz32((uint32_t)x);
+    return x > 0xFFFFFFFFu ? ew_clz32((uint32_t)(x >> 32)) : 32 + ew_clz32((uint32_t)x);
 }
 
 /* ---- conversions ---- */

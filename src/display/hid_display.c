@@ -116,6 +116,7 @@ static void take_header_byte(ew_hid_display *display, uint8_t byte)
 {
     display->header[display->header_length++] = byte;
     if (display->header_length < HEADER_BYTES) return;
+    display->header_length = 0;
     uint8_t status = read_header(display);
     if (status != EW_STREAM_OK) {
         give_up(display, status);
@@ -244,23 +245,21 @@ static void end_frame(ew_hid_display *display)
     display->state = BETWEEN;
 }
 
-/* Length byte, check and padding. The check keeps the parity of what it covers, so with
+/* Check and padding of a report whose length byte is possible. The check keeps the parity of what it covers, so with
  * the padding known to be zero an odd number of wrong bits is always found, be they in
  * the length byte itself. */
-static int is_intact(const uint8_t *report)
+static int is_intact(const uint8_t *report, uint8_t length)
 {
-    uint8_t length = report[WIRE_LENGTH];
     uint8_t padding = 0;
-    if (length > EW_STREAM_PAYLOAD_BYTES) return 0;
     for (uint8_t i = length; i < EW_STREAM_PAYLOAD_BYTES; i++) padding |= report[WIRE_PAYLOAD + i];
     return padding == 0 && report[WIRE_CHECK] == ew_wire_report_check(report, length);
 }
 
 static void take_stream_report(ew_hid_display *display, const uint8_t *report)
 {
-    uint8_t flags = report[WIRE_FLAGS];
+    const uint8_t flags = report[WIRE_FLAGS], length = report[WIRE_LENGTH];
     display->idle_ms = 0;
-    if (!is_intact(report)) {
+    if (length > EW_STREAM_PAYLOAD_BYTES || !is_intact(report, length)) {
         give_up(display, EW_STREAM_BAD_CHECK);
         return;
     }
@@ -270,7 +269,7 @@ static void take_stream_report(ew_hid_display *display, const uint8_t *report)
     else if ((flags & FLAG_SOF) != 0) begin_frame(display, flags, in_sequence);
     else if (display->state == BETWEEN || (display->state > DROPPING && !in_sequence))
         give_up(display, EW_STREAM_SEQUENCE_GAP);
-    for (uint8_t i = 0; i < report[WIRE_LENGTH] && display->state > DROPPING; i++)
+    for (uint8_t i = 0; i < length && display->state > DROPPING; i++)
         take_byte(display, report[WIRE_PAYLOAD + i]);
     if ((flags & FLAG_EOF) != 0) end_frame(display);
 }
@@ -284,15 +283,18 @@ static void take_blit(ew_hid_display *display, const uint8_t *report)
         refuse(display, EW_STREAM_UNSUPPORTED);
         return;
     }
-    /* Sides at most 4096, so at most 2^24 pixels. */
+    /* Sides at most 4096, where the corners lie inside: at most 2^24 pixels. */
+    const uint32_t pixels = ((uint32_t)x2 - x1 + 1) * ((uint32_t)y2 - y1 + 1);
     if (x2 < x1 || y2 < y1 || x2 >= display->panel_width || y2 >= display->panel_height ||
-        ((uint32_t)x2 - x1 + 1) * ((uint32_t)y2 - y1 + 1) > EW_HID_BLIT_DATA_BYTES / 2) {
+        pixels > EW_HID_BLIT_DATA_BYTES / 2) {
         refuse(display, EW_STREAM_BAD_RECT);
         return;
     }
-    for (uint16_t y = y1; y <= y2; y++)
-        for (uint16_t x = x1; x <= x2; x++, data += 2)
-            display->panel.fill(display->panel.user, x, y, 1, (uint16_t)((uint16_t)data[0] << 8 | data[1]));
+    uint16_t x = x1, y = y1;
+    for (uint32_t i = 0; i < pixels; i++) {
+        display->panel.fill(display->panel.user, x, y, 1, (uint16_t)((uint16_t)data[2 * i] << 8 | data[2 * i + 1]));
+        if (x++ == x2) x = x1, y++;
+    }
     commit(display);
 }
 

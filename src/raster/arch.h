@@ -19,10 +19,12 @@
 #else
 #define EW_ALWAYS_INLINE static inline
 #define EW_NOINLINE static EW_HOT
+#ifndef EW_COPY
 #define EW_COPY(to, from, bytes) \
     do { \
         for (size_t i_ = 0; i_ < (bytes); i_++) ((unsigned char *)(to))[i_] = ((const unsigned char *)(from))[i_]; \
     } while (0)
+#endif
 #define EW_KEEP_ORDER(x) ((void)0)
 #endif
 

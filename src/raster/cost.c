@@ -10,9 +10,10 @@ const ew_cost ew_cost_host = { 240, 23, 85 };
 
 int ew_raster_set_cost(ew_raster *raster, const ew_cost *cost)
 {
-    if (!cost->run || !cost->run_pixel || cost->pixel <= cost->run_pixel) return EW_ERR_ARGUMENT;
-    /* a run of n pixels is cheaper when run < n (pixel - run_pixel) */
-    uint32_t n = cost->run / ((uint32_t)cost->pixel - cost->run_pixel) + 1u;
+    const int32_t saved = (int32_t)cost->pixel - cost->run_pixel; /* on each pixel of a run */
+    if (!cost->run || !cost->run_pixel || saved <= 0) return EW_ERR_ARGUMENT;
+    /* a run of n pixels is cheaper when run < n saved */
+    uint32_t n = cost->run / (uint32_t)saved + 1u;
     raster->shortest_run = (uint16_t)n;
     return EW_OK;
 }

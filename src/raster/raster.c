@@ -35,8 +35,8 @@ int ew_raster_init(ew_raster *raster, const ew_target *target)
 int ew_raster_set_scissor(ew_raster *raster, const ew_rect *rect)
 {
     const ew_target *target = &raster->target;
-    if (rect->x0 > rect->x1 || rect->y0 > rect->y1 || rect->x1 > target->width || rect->y0 < target->first_row ||
-        rect->y1 > target->first_row + target->height) {
+    if (rect->x1 > target->width || rect->x0 > rect->x1 || rect->y1 > target->first_row + target->height ||
+        rect->y0 > rect->y1 || rect->y0 < target->first_row) {
         return EW_ERR_ARGUMENT;
     }
     raster->scissor = *rect;
@@ -102,16 +102,16 @@ int ew_raster_set_material(ew_raster *raster, const ew_material *material)
 
 int ew_raster_set_fog(ew_raster *raster, uint16_t rgb565, ew_uq1_31 w_near, ew_uq1_31 w_far)
 {
-    if (w_near <= w_far || w_near > 0x80000000u) return EW_ERR_ARGUMENT;
+    const int64_t range = (int64_t)w_near - w_far;
+    if (range <= 0 || w_near > 0x80000000u) return EW_ERR_ARGUMENT;
     if (!EW_WITH_FOG) return EW_ERR_UNSUPPORTED;
-    const uint32_t range = w_near - w_far;
-    const int bits = 32 - ew_clz32(range);
+    uint32_t steps = (uint32_t)range; /* 1 to 2^31 */
+    raster->fog_shift = 0;
+    for (; steps > 0xFFFFu; steps >>= 1) raster->fog_shift++;
     raster->fog_colour = rgb565;
     raster->fog_near = w_near;
     raster->fog_far = w_far;
-    raster->fog_shift = (uint8_t)(bits > 16 ? bits - 16 : 0);
-    const uint32_t steps = range >> raster->fog_shift; /* 1 to 2^16 - 1 */
-    raster->fog_scale = (0x7FFFFFFFu + steps) / steps; /* NOLINT(clang-analyzer-core.DivideZero): range > 0 */
+    raster->fog_scale = (0x7FFFFFFFu + steps) / steps; /* steps: 1 to 2^16 - 1 */
     return EW_OK;
 }
 

@@ -61,11 +61,16 @@ static int is_narrow(const ew_basis *b, const ew_corners *c, uint32_t w_min, uin
 
 static void weights_init(ew_weights *g, const ew_basis *b, const ew_corners *c)
 {
+    int up = ew_clz32(b->reach) - 1;
     uint64_t area = ew_abs64(b->area);
     int zeros = ew_clz64(area);
+    //@ split up;
+    /*@ assert narrow_basis: 11 <= up <= 30 && up + 12 <= zeros <= up + 24 &&
+          -(1 << 31 - up) < b->dx1 < 1 << 31 - up && -(1 << 31 - up) < b->dy1 < 1 << 31 - up &&
+          -(1 << 31 - up) < b->dx2 < 1 << 31 - up && -(1 << 31 - up) < b->dy2 < 1 << 31 - up &&
+          -(1 << 21) < b->to_x < 1 << 21 && -(1 << 21) < b->to_y < 1 << 21; */
     int32_t r = (int32_t)(ew_recip_newton((uint32_t)((area << zeros) >> 32)) - 1u); /* 1/area = r 2^(zeros - 94), < 2^31 */
-    int up = ew_clz32(b->reach) - 1;
-    if (b->area < 0) r = -r;
+    if (b->area < 0) r = ew_wrap_sub32(0, r); /* r >= 2^30 - 1 */
     /* d 2^up < 2^31 */
     g->x1 = ew_mulh_s32(b->dy2 * ((int32_t)1 << up), r);
     g->x2 = ew_mulh_s32(-b->dy1 * ((int32_t)1 << up), r);
@@ -157,6 +162,7 @@ static void wide_planes(ew_triangle *t, ew_basis *b, const ew_corners *c, const 
     }
     if (!near_enough) basis_of_snapped(b, c);
     uint64_t area = ew_abs64(b->area);
+    //@ assert area_is_not_zero: area > 0;
     int zeros = ew_clz64(area);
     uint32_t r = ew_recip_newton((uint32_t)((area << zeros) >> 32));
     for (int i = 0; i <= t->attributes; i++) {
@@ -294,8 +300,8 @@ static void runs_init(ew_triangle *t, const ew_raster *raster, uint32_t w_min)
     /* an explicit rung is taken at its word, but for runs of one pixel */
     t->shortest = automatic ? (uint16_t)larger(raster->shortest_run, 2) : 2;
     if (t->rung == EW_RUNG_RUNS) t->run_tolerance = raster->material.tolerance;
-    const int zeros = ew_clz64(dw);
-    run_scale_init(t, dw ? (uint32_t)((dw << zeros) >> 32) : 0, zeros, raster->material.tolerance);
+    const int zeros = dw ? ew_clz64(dw) : 0;
+    run_scale_init(t, (uint32_t)((dw << zeros) >> 32), zeros, raster->material.tolerance);
     t->sure_run = sure_run_of(t, dw, w_min);
 }
 
@@ -309,6 +315,8 @@ enum { TABLE_REACH = 12 + 9 - (EW_RECIP_BITS < 8 ? 2 * (8 - EW_RECIP_BITS) : 0) 
 /* d w' / 2^(3 + bits), |d| < 2^bits; or d itself with its fraction bits for the affine rung. */
 static int32_t attribute(int32_t d, uint32_t w, int bits, int affine)
 {
+    //@ split bits;
+    //@ assert within_bits: -(1 << bits) < d < 1 << bits;
     if (affine) return d * ((int32_t)1 << (EW_BITS_MOST - bits));
     return EW_ASR(ew_mulh_s32(d * ((int32_t)1 << (31 - bits)), (int32_t)w), 2); /* d w' 2^(31 - bits - 32 - 2) */
 }
@@ -369,6 +377,8 @@ int ew_setup(ew_raster *raster)
     const ew_raster_vertex *const *v = c->v;
     const int has_texture = raster->texture.texels != NULL, has_shades = (raster->material.flags & EW_SHADED) != 0;
     uint32_t w_max = larger(larger(v[0]->w, v[1]->w), v[2]->w), w_min = smaller(smaller(v[0]->w, v[1]->w), v[2]->w);
+    //@ split has_shades;
+    //@ split has_texture;
     t->attributes = (uint8_t)(has_shades ? 5 : has_texture ? 2 : 0);
     t->uv_bits = has_shades ? EW_SHADE_BITS : EW_BITS_LEAST;
     if (has_texture) {
@@ -385,7 +395,7 @@ int ew_setup(ew_raster *raster)
 
     t->w_lead = (uint8_t)smaller((uint32_t)ew_clz32(w_max + w_max / 2), 24);
     for (int i = 0; i < 3; i++) w[i] = (v[i]->w << t->w_lead) >> 1;
-    for (int k = 0; k < 2; k++) of->d[EW_PLANE_W][k] = (int32_t)(w[k + 1] - w[0]);
+    for (int k = 0; k < 2; k++) of->d[EW_PLANE_W][k] = (int32_t)w[k + 1] - (int32_t)w[0];
     const int affine = t->rung == EW_RUNG_AFFINE;
     for (int k = 0; k < 2; k++) of->d[EW_PLANE_U][k] = of->d[EW_PLANE_V][k] = 0;
     if (has_texture) textured(t, of, raster, c, w, affine);

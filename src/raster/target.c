@@ -108,6 +108,7 @@ EW_NOINLINE void put_565(const ew_target *target, const ew_piece *piece)
     uint16_t *to = (uint16_t *)target->colour + ew_row_start(target, piece->y) + piece->x;
     const uint16_t *c = piece->colour[0];
     const int swap = EW_WITH_TARGET_FORMATS && target->format == EW_TARGET_RGB565_SWAPPED;
+    //@ loop unroll 8;
     for (uint32_t live = piece->live & 0xFFu >> (EW_PIECE - piece->n); live; live >>= 1, to++, c += 3) {
         const uint32_t p = (uint32_t)(c[0] >> 7) << 11 | (uint32_t)(c[1] >> 6) << 5 | c[2] >> 7;
         if (live & 1u) *to = (uint16_t)(swap ? swapped(p) : p);

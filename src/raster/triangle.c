@@ -8,9 +8,9 @@ static int32_t smaller(int32_t a, int32_t b) { return a < b ? a : b; }
 
 static int in_range(const ew_raster_vertex *v)
 {
-    const uint32_t guard = (uint32_t)EW_GUARD_PX * 4096u; /* 2^29 */
-    return ew_abs32(v->x) <= guard && ew_abs32(v->y) <= guard && v->w > 0 && v->w <= 0x80000000u &&
-           ew_abs32(v->u) < UINT32_C(1) << 30 && ew_abs32(v->v) < UINT32_C(1) << 30;
+    const int32_t guard = EW_GUARD_PX * 4096, uv = INT32_C(1) << 30; /* 2^29 */
+    return v->x >= -guard && v->x <= guard && v->y >= -guard && v->y <= guard && v->w > 0 && v->w <= 0x80000000u &&
+           v->u > -uv && v->u < uv && v->v > -uv && v->v < uv;
 }
 
 int ew_raster_triangle(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_vertex *b,

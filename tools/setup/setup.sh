@@ -1,6 +1,6 @@
 #!/bin/sh
 # setup.sh GOAL: installs the distribution's packages that `make GOAL` needs and that are
-# missing. GOAL: demo, test, lab, count, report, firmware, lint or cross (the compilers that tests
+# missing. GOAL: demo, test, lab, count, report, firmware, lint, prove or cross (the compilers that tests
 # try when they are there). With SETUP=0 it only lists what is missing and exits with 2. Beside
 # it only the lab's `vmlab.sh prepare` uses the network.
 set -eu
@@ -11,6 +11,7 @@ test="$demo libcmocka-dev assimp-testmodels libosmesa6-dev"
 count="$demo valgrind gcc-arm-none-eabi gcc-riscv64-unknown-elf qemu-system-arm qemu-system-misc"
 report="$count gnuplot-nox fonts-dejavu-core libcmocka-dev"
 cross="gcc-arm-none-eabi gcc-riscv64-unknown-elf gcc-avr"
+prove="gcc libc6-dev python3 libcmocka-dev frama-c-base z3"
 lint="gcc libc6-dev cppcheck clang-tidy libcmocka-dev libosmesa6-dev"
 firmware="$demo clang $cross avr-libc qemu-system-arm qemu-system-misc simavr"
 lab="$demo libusb-1.0-0-dev gpiod qemu-system-x86 busybox-static cpio kmod xz-utils"
@@ -25,8 +26,9 @@ report) wanted=$report ;;
 firmware) wanted=$firmware ;;
 cross) wanted=$cross ;;
 lint) wanted=$lint ;;
+prove) wanted=$prove ;;
 *)
-    echo "usage: setup.sh demo|test|lab|count|report|firmware|cross|lint   (SETUP=0: only list what is missing)" >&2
+    echo "usage: setup.sh demo|test|lab|count|report|firmware|cross|lint|prove   (SETUP=0: only list what is missing)" >&2
     exit 2
     ;;
 esac
