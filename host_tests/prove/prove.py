@@ -48,7 +48,7 @@ PARTS = [
          exceptions=["narrow_basis", "area_is_not_zero", "within_bits"], promises=PRODUCTS),
     Part("pixels", "prove_pixels.c", "src/raster/fill.c " + CONTEXT, ints=(32,), precision=0,
          options=["-eva-auto-loop-unroll", "32", "-eva-min-loop-unroll", "3"]),
-    Part("fixed", "prove_fixed.c", "fixed/arithmetic.c fixed/recip.c"),
+    Part("fixed", "prove_fixed.c", "fixed/arithmetic.c fixed/recip.c", promises=PRODUCTS),
 ]
 
 # One-argument functions over all of their arguments: tests that `make test` runs, too.
