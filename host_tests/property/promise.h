@@ -19,7 +19,7 @@ typedef struct promise_way {
     double reach;       /* texels between corners up to which it promises something             */
 } promise_way;
 
-enum { PROMISE_WAYS = 13 };
+enum { PROMISE_WAYS = 15 };
 extern const promise_way promise_ways[PROMISE_WAYS];
 
 enum { PROMISE_PIXELS = 4096 * 4, PROMISE_TEXTURE_MOST = 2048 };

@@ -28,7 +28,7 @@ typedef struct figures {
 
 static figures seen[PROMISE_WAYS];
 /* Beyond these the ways are bounded by the triangle itself, as the raster layer takes it. */
-enum { MESH_WAYS = 9 };
+enum { MESH_WAYS = 11 };
 
 static long rows_shown;
 

@@ -45,7 +45,7 @@ typedef struct ew_triangle {
     uint8_t run_shift;          /* -run_exponent, 0 to 31: of ew_one_run_suffices */
     uint8_t attributes;         /* how many planes follow that of w: 0, 2, 5     */
     uint8_t is_wide;
-    uint8_t is_quick;           /* rows_of_texture (span.c) will do              */
+    uint8_t is_quick;           /* ew_rows_of_texture (span.c) will do           */
     uint8_t rung;               /* never EW_RUNG_AUTO                            */
     uint8_t newton;             /* whether the better reciprocal is needed       */
     uint8_t plain;              /* PLAIN_NEVER, PLAIN_SOMETIMES, PLAIN_ALWAYS    */

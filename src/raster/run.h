@@ -59,6 +59,7 @@ EW_ALWAYS_INLINE int ew_run_fits(const ew_run_limit *limit, uint32_t q, int32_t 
 EW_ALWAYS_INLINE int32_t ew_run_next(const ew_run_limit *limit, uint32_t w, int32_t n)
 {
     const uint32_t q = (w >> 15) * limit->scale >> limit->down;
+    if (n > limit->longest) n = limit->longest; /* behind pixels of their own */
     while (n < limit->longest && ew_run_fits(limit, q, n + 1)) n++;
     while (!ew_run_fits(limit, q, n)) n--;
     /* below 4 t: n <= w / |dw| = q / 4 t, and n^2 <= q */

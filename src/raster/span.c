@@ -147,12 +147,11 @@ static uint32_t in_tolerance(uint32_t d, uint32_t tolerance)
 
 /* A tangent is off to one side only. Moved by the tolerance to the other side, it may be
  * sqrt 2 as long (docs/error-bound.md). Returns whether that can be done for a piece of n
- * pixels. */
+ * pixels; where not, *by is left as it is. */
 EW_NOINLINE int move_init(ew_move *by, const ew_triangle *t, const ew_linear *l, int32_t n)
 {
     enum { LEAST = 8, MOST = 16 }; /* what lies up to 1 px outside of 8 is within the range of numbers */
     const uint32_t tolerance = t->run_tolerance;
-    by->w = by->u = by->v = by->shade[0] = by->shade[1] = by->shade[2] = 0;
     if (n < LEAST || tolerance == 0 || tolerance > MOST) return 0;
     const uint32_t sign = (int32_t)l->dw < 0 ? UINT32_MAX : 1u;
     const uint32_t fall = in_tolerance(l->dw * sign, tolerance);
@@ -611,13 +610,7 @@ EW_HOT int ew_rows_of_texture(ew_raster *raster, ew_triangle *t, ew_edge *edge, 
             }
             reached = 1;
         }
-        if (t->is_wide) {
-            planes_step(t, 1, 2);
-        } else {
-            p[EW_PLANE_W].row += p[EW_PLANE_W].dy;
-            p[EW_PLANE_U].row += p[EW_PLANE_U].dy;
-            p[EW_PLANE_V].row += p[EW_PLANE_V].dy;
-        }
+        planes_step(t, t->is_wide, 2);
         ew_edge_step(&edge[0]);
         ew_edge_step(&edge[1]);
     }
