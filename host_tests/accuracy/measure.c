@@ -197,7 +197,7 @@ static void bound_triangle(const logged_triangle *t)
         widest = fmax(widest, ldexp(hypot(a->x - b->x, a->y - b->y), -12) * fabs((double)a->w - b->w));
         now.m.reach = fmax(now.m.reach, ldexp(fmax(fabs((double)a->u - b->u), fabs((double)a->v - b->v)), -12));
     }
-    now.m.affine_bound = fmax(now.m.affine_bound, widest / (3 * w_min));
+    now.m.affine_bound = fmax(now.m.affine_bound, widest / (4 * w_min));
 }
 
 static void judge_fragment(const logged_fragment *f, const ref_triangle *truth, const ew_raster *raster)

@@ -73,7 +73,7 @@ promise_triangle promise_of(const ew_raster_vertex v[3])
         least = fmin(least, a->w);
         sum += way, most = fmax(most, way);
     }
-    t.affine = fmax(3 * most, most + sum) / (12 * least); /* docs/error-bound.md, "a whole triangle" */
+    t.affine = most / (4 * least); /* docs/error-bound.md, "a whole triangle" */
     return t;
 }
 

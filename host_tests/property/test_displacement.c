@@ -204,6 +204,31 @@ static void any_reach(void **state)
     run("ratio to 10^6, 32767 texels", 1e6, 32767, 3000, 250000);
 }
 
+/* Triangles small and alike enough in depth to be drawn linearly, moved or not. */
+static void nearly_affine(void **state)
+{
+    (void)state;
+    const char *name = "nearly affine";
+    begin();
+    for (cases c = cases_of(name, 3000, 250000); cases_next(&c);) {
+        ew_raster_vertex v[3];
+        const double near = pow(2, uniform(-16, 0)), alike = pow(2, uniform(-6, -1)), share = pow(2, uniform(-5, 0));
+        memset(v, 0, sizeof v);
+        picture(64, 48);
+        triangle_place(v, KIND_ORDINARY, 64, 48);
+        for (int i = 0; i < 3; i++) {
+            v[i].x = (int32_t)(v[0].x + share * (v[i].x - v[0].x));
+            v[i].y = (int32_t)(v[0].y + share * (v[i].y - v[0].y));
+            v[i].w = (uint32_t)fmax(1, floor(ldexp(near * (1 - alike * uniform(0, 1)), 31)));
+        }
+        if (pick(4) == 0) v[1 + pick(2)].w = v[0].w;
+        choose_texels(v, pow(512, uniform(0.5, 1)));
+        triangle_context(name, c.number, v);
+        draw_and_judge(v, c.number);
+    }
+    end(name);
+}
+
 /* A triangle that grows by thousandths of a texel per pixel: the tangent's slope was
  * (du/z - u dw) / w with u dw rounded down to a whole unit of u/z, 1/1900 texel here, for each of up
  * to 32 pixels. */
@@ -298,7 +323,7 @@ static void through_the_near_plane(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { TEST(ordinary), TEST(any_ratio), TEST(any_reach),
+    const struct CMUnitTest tests[] = { TEST(ordinary), TEST(any_ratio), TEST(any_reach), TEST(nearly_affine),
                                         TEST(slope_of_small_differences), TEST(through_the_near_plane) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

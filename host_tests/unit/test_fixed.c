@@ -45,6 +45,9 @@ static void high_words_of_pieces(void **state)
         test_context("%d * %d", a, b);
         assert_int_equal(ew_mulh_s32_pieces(a, b), (int32_t)(((int64_t)a * b) >> 32));
         assert_true(ew_mulh_u32_pieces((uint32_t)a, (uint32_t)b) == (uint32_t)((uint64_t)(uint32_t)a * (uint32_t)b >> 32));
+        const uint32_t u = (uint32_t)a, half = (uint32_t)b & 0xFFFFu;
+        assert_true(ew_mul_u32_u16_pieces(u, half) == (uint64_t)u * half);
+        assert_true(ew_mul_u32_u16(u, half) == (uint64_t)u * half);
     }
 }
 

@@ -41,7 +41,7 @@ static inline int32_t ew_wrap_add32(int32_t a, int32_t b) { return (int32_t)((ui
 static inline int32_t ew_wrap_sub32(int32_t a, int32_t b) { return (int32_t)((uint32_t)a - (uint32_t)b); }
 static inline uint64_t ew_wrap_mul64(uint64_t a, int32_t b) { return a * (uint64_t)(int64_t)b; }
 
-/* 32 x 32 -> 64 bits, exact, and the high word of that: floor(a b / 2^32). Forms in pieces are
+/* 32 x 32 -> 64 bits, exact, the high word of that: floor(a b / 2^32), and the same for b < 2^16. Forms in pieces are
  * made of 16-bit ones, for cores without a long multiply, where compilers call a library for
  * 64 x 64 bits; all give the same bits. */
 uint64_t ew_mul_u32_pieces(uint32_t a, uint32_t b);
@@ -52,6 +52,11 @@ static inline uint32_t ew_mulh_u32_pieces(uint32_t a, uint32_t b)
     uint32_t middle = ah * bl + ((al * bl) >> 16);   /* <= (2^16 - 1)^2 + 2^16 - 1 */
     uint32_t other = al * bh + (middle & 0xFFFFu);   /* likewise                    */
     return ah * bh + (middle >> 16) + (other >> 16);
+}
+static inline uint64_t ew_mul_u32_u16_pieces(uint32_t a, uint32_t b)
+{
+    const uint32_t low = (a & 0xFFFFu) * b, high = (a >> 16) * b + (low >> 16); /* <= (2^16 - 1)^2 + 2^16 - 1 */
+    return (uint64_t)(high >> 16) << 32 | (high << 16 | (low & 0xFFFFu));
 }
 static inline int32_t ew_mulh_s32_pieces(int32_t a, int32_t b)
 {
@@ -67,12 +72,14 @@ static inline int64_t ew_mul_s32(int32_t a, int32_t b) { return ew_mul_s32_piece
 static inline uint64_t ew_mul_u32(uint32_t a, uint32_t b) { return ew_mul_u32_pieces(a, b); }
 static inline int32_t ew_mulh_s32(int32_t a, int32_t b) { return ew_mulh_s32_pieces(a, b); }
 static inline uint32_t ew_mulh_u32(uint32_t a, uint32_t b) { return ew_mulh_u32_pieces(a, b); }
+static inline uint64_t ew_mul_u32_u16(uint32_t a, uint32_t b) { return ew_mul_u32_u16_pieces(a, b); }
 #define ew_product_less ew_product_less_pieces
 #else
 static inline int64_t ew_mul_s32(int32_t a, int32_t b) { return (int64_t)a * b; }
 static inline uint64_t ew_mul_u32(uint32_t a, uint32_t b) { return (uint64_t)a * b; }
 static inline int32_t ew_mulh_s32(int32_t a, int32_t b) { return (int32_t)EW_ASR((int64_t)a * b, 32); }
 static inline uint32_t ew_mulh_u32(uint32_t a, uint32_t b) { return (uint32_t)(((uint64_t)a * b) >> 32); }
+static inline uint64_t ew_mul_u32_u16(uint32_t a, uint32_t b) { return (uint64_t)a * b; }
 #define ew_product_less ew_product_less_long
 #endif
 

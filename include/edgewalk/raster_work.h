@@ -45,7 +45,7 @@ typedef struct ew_triangle {
     uint8_t run_shift;          /* -run_exponent, 0 to 31: of ew_one_run_suffices */
     uint8_t attributes;         /* how many planes follow that of w: 0, 2, 5     */
     uint8_t is_wide;
-    uint8_t is_quick;           /* ew_rows_of_texture (span.c) will do           */
+    uint8_t walk;               /* WALK_ANY, WALK_TEXTURE, WALK_PACKED           */
     uint8_t rung;               /* never EW_RUNG_AUTO                            */
     uint8_t newton;             /* whether the better reciprocal is needed       */
     uint8_t plain;              /* PLAIN_NEVER, PLAIN_SOMETIMES, PLAIN_ALWAYS    */
@@ -56,7 +56,7 @@ typedef struct ew_triangle {
     union {
         ew_plane32 narrow[EW_PLANES];
         ew_plane64 wide[EW_PLANES];
-    } plane; /* 1/z, then the attributes                              */
+    } plane; /* 1/z, then the attributes; WALK_PACKED: u and v are packed (span.c) */
     ew_q20_12 u_origin, v_origin; /* u and v of corner 0 in texels               */
     int32_t shade_origin[3];    /* its shades, 2^24 is all                       */
 } ew_triangle;
@@ -110,11 +110,19 @@ typedef struct ew_weights {
     int32_t there1, there2; /* their weights at the box's first pixel, 2^26 is 1; |.| <= 2^30 */
 } ew_weights;
 
-/* What planes are made of: values of w' and of all attributes at corners 1 and 2, less those
- * at corner 0. */
+/* What planes are made of: values of w' and of all attributes at corner 0, and at corners 1 and 2
+ * less what they are at corner 0. */
 typedef struct ew_differences {
+    uint32_t a0[EW_PLANES];
     int32_t d[EW_PLANES][2];
 } ew_differences;
+
+/* How attributes of the affine rung are moved: by a share of what they differ by along a side, of 0 and 1,
+ * of 0 and 2, or of 1 and 2. */
+typedef struct ew_affine_move {
+    int32_t share; /* 2^32 is all: up to 7 / 320 */
+    uint8_t side;
+} ew_affine_move;
 
 /* ---- spans (span.c) ---- */
 
@@ -137,7 +145,6 @@ typedef struct ew_run_limit {
     uint32_t scale;
     uint32_t fall;    /* tolerance, 1/16 px, where w falls                                */
     int32_t longest;
-    int32_t tolerance; /* 1/16 px                                                         */
     int down;
 } ew_run_limit;
 
@@ -245,7 +252,9 @@ typedef struct ew_span_work {
     ew_linear linear; /* and the pen: near each other, which short offsets reach           */
     ew_move by;
     ew_run_limit limit;
-    int32_t left; /* pixels of the piece                                                  */
+    int32_t left;      /* pixels of the piece                                             */
+    int32_t first;     /* pixels of the run that a span began with, where is_ready         */
+    uint8_t is_ready;  /* `by` and `limit` are those of all spans of the triangle          */
     union {
         ew_pen pen;
         struct {
@@ -269,6 +278,7 @@ typedef struct ew_raster_work {
             ew_basis basis;
             ew_weights weights;
             ew_differences differences;
+            ew_affine_move move;
             uint32_t w[3]; /* of the corners, scaled                                       */
         } setup;
         ew_span_work span;

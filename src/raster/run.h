@@ -22,8 +22,7 @@ EW_ALWAYS_INLINE uint32_t ew_root16(uint32_t product, int exponent)
 
 /* The bound allows N^2 |dw| <= 4 t w for a run of N pixels, with w at its far end: with w at its
  * first pixel and q = 4 t w / |dw|, N^2 <= q where w grows along the run and N^2 + 4 t N <= q
- * where it falls. Twice within a run is as far as w may grow or fall, for the run's slope to be a
- * number of 32 bits: N <= w / |dw| = q / 4 t, which only asks for more where N < 4 t. */
+ * where it falls. */
 
 /* Whether a span of n pixels, at most EW_LONGEST_RUN, may be one run. */
 EW_ALWAYS_INLINE int ew_one_run_suffices(const ew_triangle *t, uint32_t w, uint32_t dw, int align, int32_t n)
@@ -31,7 +30,7 @@ EW_ALWAYS_INLINE int ew_one_run_suffices(const ew_triangle *t, uint32_t w, uint3
     /* the tangent's far end is the mirrored first pixel: one beyond the last where n is even */
     int32_t there = (int32_t)(w + dw * (uint32_t)n), far_end = (int32_t)w < there ? (int32_t)w : there;
     int down = t->run_shift + align;
-    return t->rung == EW_RUNG_RUNS && n <= t->longest && far_end > 0 && 4u * (uint32_t)n >= t->run_tolerance &&
+    return t->rung == EW_RUNG_RUNS && n <= t->longest && far_end > 0 &&
            (uint32_t)(n * n) << 8 <= ((uint32_t)far_end >> 15) * t->run_scale >> (down < 31 ? down : 31);
 }
 
@@ -41,11 +40,10 @@ EW_ALWAYS_INLINE int ew_one_run_suffices(const ew_triangle *t, uint32_t w, uint3
  * it, with what stays the same. `twice` doubles t. */
 EW_ALWAYS_INLINE void ew_run_limit_init(ew_run_limit *limit, const ew_triangle *t, uint32_t dw, int align, int twice)
 {
-    const int tolerance = (int)t->run_tolerance << twice, down = align - twice - t->run_exponent;
+    const int down = align - twice - t->run_exponent;
     limit->scale = t->run_scale;
-    limit->fall = (int32_t)dw < 0 ? (uint32_t)tolerance : 0;
+    limit->fall = (int32_t)dw < 0 ? (uint32_t)t->run_tolerance << twice : 0;
     limit->longest = t->longest;
-    limit->tolerance = tolerance;
     limit->down = down < 0 ? 0 : down > 31 ? 31 : down; /* w' has bits enough for 256 px at 0 */
 }
 
@@ -55,23 +53,35 @@ EW_ALWAYS_INLINE int ew_run_fits(const ew_run_limit *limit, uint32_t q, int32_t 
     return (uint32_t)n * (4u * (uint32_t)n + limit->fall) << 6 <= q; /* 2^24 at most */
 }
 
-/* The longest run from a pixel with 1/z = w on, where the one before it had n pixels. */
-EW_ALWAYS_INLINE int32_t ew_run_next(const ew_run_limit *limit, uint32_t w, int32_t n)
+EW_ALWAYS_INLINE uint32_t ew_run_square(const ew_run_limit *limit, uint32_t w)
 {
-    const uint32_t q = (w >> 15) * limit->scale >> limit->down;
-    if (n > limit->longest) n = limit->longest; /* behind pixels of their own */
+    return (w >> 15) * limit->scale >> limit->down;
+}
+
+/* The longest run from a pixel with 1/z = w on, by way of one of n pixels. */
+EW_ALWAYS_INLINE int32_t ew_run_near(const ew_run_limit *limit, uint32_t w, int32_t n)
+{
+    const uint32_t q = ew_run_square(limit, w);
+    if (n > limit->longest) n = limit->longest;
     while (n < limit->longest && ew_run_fits(limit, q, n + 1)) n++;
     while (!ew_run_fits(limit, q, n)) n--;
-    /* below 4 t: n <= w / |dw| = q / 4 t, and n^2 <= q */
-    return 4 * n < limit->tolerance ? 4 * n * n / limit->tolerance : n;
+    return n;
+}
+
+/* The same behind the longest run, of n pixels: it is no shorter where w grows, no longer where w falls. */
+EW_ALWAYS_INLINE int32_t ew_run_after(const ew_run_limit *limit, uint32_t w, int32_t n)
+{
+    const uint32_t q = ew_run_square(limit, w);
+    if (limit->fall) while (!ew_run_fits(limit, q, n)) n--;
+    else while (n < limit->longest && ew_run_fits(limit, q, n + 1)) n++;
+    return n;
 }
 
 EW_ALWAYS_INLINE int32_t ew_run_first(const ew_run_limit *limit, uint32_t w)
 {
     uint32_t n16 = ew_root16((w >> 15) * limit->scale, -limit->down);
     n16 = n16 > 2u * limit->fall ? n16 - 2u * limit->fall : 0;
-    int32_t n = (int32_t)(n16 >> 4);
-    return ew_run_next(limit, w, n < limit->longest ? n : limit->longest);
+    return ew_run_near(limit, w, (int32_t)(n16 >> 4));
 }
 
 #endif

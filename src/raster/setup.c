@@ -84,16 +84,28 @@ static void weights_init(ew_weights *g, const ew_basis *b, const ew_corners *c)
     g->there2 = (int32_t)EW_ASR(ew_mul_s32(g->x2, x) + ew_mul_s32(g->y2, y), g->shift - 14);
 }
 
-/* The plane's value at the box's first pixel, from the weights there, then whole steps to where
- * the row begins: wherever a scissor cuts, the bits are the same. |d| < 2^31. */
-static void plane32_init(ew_plane32 *p, const ew_corners *c, const ew_weights *g, uint32_t a0, int32_t d1, int32_t d2)
+/* With the value at the box's first pixel, from the weights there. |d| < 2^31. */
+static void plane32_init(ew_plane32 *p, const ew_weights *g, uint32_t a0, int32_t d1, int32_t d2)
 {
-    const uint32_t gx = (uint32_t)EW_ASR(ew_mul_s32(d1, g->x1) + ew_mul_s32(d2, g->x2), g->shift);
-    const uint32_t gy = (uint32_t)EW_ASR(ew_mul_s32(d1, g->y1) + ew_mul_s32(d2, g->y2), g->shift);
-    const uint32_t there = a0 + (uint32_t)EW_ASR(ew_mul_s32(d1, g->there1) + ew_mul_s32(d2, g->there2), 26);
-    p->row = there + gx * (uint32_t)(c->from - c->x0) + gy * (uint32_t)(c->first - c->y0);
-    p->dx = gx;
-    p->dy = gy;
+    p->row = a0 + (uint32_t)EW_ASR(ew_mul_s32(d1, g->there1) + ew_mul_s32(d2, g->there2), 26);
+    p->dx = (uint32_t)EW_ASR(ew_mul_s32(d1, g->x1) + ew_mul_s32(d2, g->x2), g->shift);
+    p->dy = (uint32_t)EW_ASR(ew_mul_s32(d1, g->y1) + ew_mul_s32(d2, g->y2), g->shift);
+}
+
+/* Planes of 32 bits begin at the box's first pixel and are taken in whole steps to where the row begins:
+ * wherever a scissor cuts, the bits are the same. */
+static void narrow_planes(ew_raster *raster, ew_triangle *t, const ew_corners *c, const ew_differences *of)
+{
+    ew_weights *g = &raster->work.now.setup.weights;
+    weights_init(g, &raster->work.now.setup.basis, c);
+    for (int i = 0; i <= t->attributes; i++) {
+        plane32_init(&t->plane.narrow[i], g, of->a0[i], of->d[i][0], of->d[i][1]);
+    }
+    if (t->walk == WALK_TEXTURE && t->rung == EW_RUNG_AFFINE && c->steps <= EW_LONGEST_RUN) {
+        t->walk = WALK_PACKED;
+        ew_planes_pack(t, &raster->work.packing);
+    }
+    if (c->from > c->x0 || c->first > c->y0) ew_planes_go(t, (uint32_t)(c->from - c->x0), (uint32_t)(c->first - c->y0));
 }
 
 /* ---- wide triangles ---- */
@@ -151,7 +163,7 @@ static void plane64_init(ew_plane64 *p, const ew_basis *b, uint32_t r, int zeros
 
 /* Where the finer positions' planes could leave the values of the corners too far, those of
  * the snapped ones are taken instead, which are never evaluated outside. */
-static void wide_planes(ew_triangle *t, ew_basis *b, const ew_corners *c, const ew_differences *of, uint32_t w0, uint32_t w_min)
+static void wide_planes(ew_triangle *t, ew_basis *b, const ew_corners *c, const ew_differences *of, uint32_t w_min)
 {
     int near_enough = b->area != 0 && (b->area > 0) == c->positive;
     /* as much again as attributes have at the farthest corner */
@@ -166,7 +178,7 @@ static void wide_planes(ew_triangle *t, ew_basis *b, const ew_corners *c, const 
     int zeros = ew_clz64(area);
     uint32_t r = ew_recip_newton((uint32_t)((area << zeros) >> 32));
     for (int i = 0; i <= t->attributes; i++) {
-        plane64_init(&t->plane.wide[i], b, r, zeros, i == EW_PLANE_W ? w0 : 0, of->d[i][0], of->d[i][1]);
+        plane64_init(&t->plane.wide[i], b, r, zeros, of->a0[i], of->d[i][0], of->d[i][1]);
     }
 }
 
@@ -179,32 +191,73 @@ static uint32_t length_of(uint32_t dx, uint32_t dy)
     return dx > dy ? dx + dy / 2 : dy + dx / 2;
 }
 
-/* Lengths of edges and differences of 1/z along them: corners 0 and 1, 0 and 2, 1 and 2. */
+/* What lies between corners 0 and 1, 0 and 2, 1 and 2: the side of a and b is a + b - 1. */
 typedef struct sides {
-    uint32_t length[3], dw[3];
+    int32_t dx[3], dy[3], dw[3]; /* q20.12, uq1.31; b's less a's                           */
+    uint32_t length[3];
 } sides;
-
-static uint32_t apart(uint32_t a, uint32_t b) { return a > b ? a - b : b - a; }
 
 static void sides_init(sides *s, const ew_basis *b, const ew_raster_vertex *const v[3])
 {
-    s->length[0] = length_of((uint32_t)b->dx1, (uint32_t)b->dy1), s->dw[0] = apart(v[0]->w, v[1]->w);
-    s->length[1] = length_of((uint32_t)b->dx2, (uint32_t)b->dy2), s->dw[1] = apart(v[0]->w, v[2]->w);
-    s->length[2] = length_of((uint32_t)b->dx2 - (uint32_t)b->dx1, (uint32_t)b->dy2 - (uint32_t)b->dy1);
-    s->dw[2] = apart(v[1]->w, v[2]->w);
+    s->dx[0] = b->dx1, s->dy[0] = b->dy1;
+    s->dx[1] = b->dx2, s->dy[1] = b->dy2;
+    s->dx[2] = b->dx2 - b->dx1, s->dy[2] = b->dy2 - b->dy1; /* <= 2^30: between two corners, too */
+    s->dw[0] = (int32_t)(v[1]->w - v[0]->w); /* |dw| < 2^31 */
+    s->dw[1] = (int32_t)(v[2]->w - v[0]->w);
+    s->dw[2] = (int32_t)(v[2]->w - v[1]->w);
+    for (int i = 0; i < 3; i++) s->length[i] = length_of((uint32_t)s->dx[i], (uint32_t)s->dy[i]);
+}
+
+/* With V = (the difference of 1/z) (that of positions) for each side, drawing attributes linearly
+ * over a whole triangle displaces them by V / 4 w_min at most, and always along V. So they may be
+ * drawn moved the other way by a share of the longest V: the displacement is then within the hull
+ * of these combinations of V_ij, the longest, of V_ik and of V_kj, with i nearer than j, over
+ * 64 w_min (docs/error-bound.md). */
+static const int8_t moved_hull[][3] = { { -9, 17, 0 }, { -7, 0, 16 }, { 9, 0, 0 }, { -7, 16, 0 }, { -7, 17, -2 } };
+
+/* Whether that hull lies within the tolerance, 4 t w_min = `allowed`; |V| is at most twice as large. */
+static int hull_is_within(const sides *s, int longest, uint64_t allowed)
+{
+    /* a and b are the corners of the longest side, k is the third */
+    const int a = longest > 1, b = longest > 0 ? 2 : 1, k = 2 - longest;
+    const int i = s->dw[longest] < 0 ? a : b, j = a + b - i;
+    const int side[3] = { longest, i + k - 1, j + k - 1 };
+    const int down = 54 - ew_clz64(allowed);
+    if (down < 0) return 0;
+    int32_t x[3], y[3];
+    for (int n = 0; n < 3; n++) { /* of `allowed` 10 bits are left: 2^11 */
+        x[n] = (int32_t)EW_ASR(ew_mul_s32(s->dx[side[n]], s->dw[side[n]]), down);
+        y[n] = (int32_t)EW_ASR(ew_mul_s32(s->dy[side[n]], s->dw[side[n]]), down);
+    }
+    const int32_t most = ((int32_t)(allowed >> down) - 3) * 16; /* x and y are off by 1: 26 at most; 2^14 */
+    for (unsigned n = 0; n < sizeof moved_hull / sizeof *moved_hull; n++) {
+        const int8_t *of = moved_hull[n];
+        const int32_t mx = of[0] * x[0] + of[1] * x[1] + of[2] * x[2]; /* 26 2^11 in any direction: */
+        const int32_t my = of[0] * y[0] + of[1] * y[1] + of[2] * y[2]; /* the squares' sum is below 2^31.5 */
+        if ((uint32_t)mx * (uint32_t)mx + (uint32_t)my * (uint32_t)my > (uint32_t)(most * most)) return 0;
+    }
+    return 1;
 }
 
 /* Whether attributes drawn linearly over the whole triangle are displaced by at most the
- * tolerance: with M = L |dw| of the edges, the largest of them M_1,
- * max(3 M_1, 2 M_1 + M_2 + M_3) <= 12 t w_min (docs/error-bound.md). */
-static int affine_suffices(const sides *s, uint32_t tolerance, uint32_t w_min)
+ * tolerance, and how they are moved for that. */
+static int affine_suffices(ew_affine_move *by, const sides *s, uint32_t tolerance, uint32_t w_min, uint32_t w_max)
 {
-    const uint64_t allowed = ew_mul_u32(w_min, UINT32_C(3072) * tolerance); /* q12: 2^31 2^20 */
-    const uint64_t a = ew_mul_u32(s->length[0], s->dw[0]), b = ew_mul_u32(s->length[1], s->dw[1]); /* 2^31.6 2^31 */
-    const uint64_t c = ew_mul_u32(s->length[2], s->dw[2]);
-    if (a > allowed || b > allowed || c > allowed) return 0; /* 2^51 */
-    const uint64_t most = a > b ? (a > c ? a : c) : b > c ? b : c, sum = a + b + c;
-    return most + (sum > 2 * most ? sum : 2 * most) <= allowed;
+    const uint64_t allowed = ew_mul_u32(w_min, UINT32_C(1024) * tolerance); /* q12: 2^31 2^18 */
+    uint64_t most = 0;
+    for (int i = 0; i < 3; i++) {
+        const uint64_t product = ew_mul_u32(s->length[i], ew_abs32(s->dw[i])); /* 2^31.6 2^31 */
+        if (product > most) most = product, by->side = (uint8_t)i;
+    }
+    if (most <= allowed) return 1;
+    if (most > 2 * allowed || w_max - w_min > w_min / 8 + w_min / 16) return 0;
+    if (!hull_is_within(s, by->side, allowed)) return 0;
+    /* 7 |dw| / 64 w_min of 2^32; 1 / w_min = r 2^zeros / 2^62 */
+    const int zeros = ew_clz32(w_min);
+    const int32_t dw = s->dw[by->side];
+    const uint32_t share = ew_mulh_u32(ew_abs32(dw) << zeros, ew_recip_table(w_min << zeros)) * 7u >> 4; /* 2^28 7 */
+    by->share = dw < 0 ? -(int32_t)share : (int32_t)share;
+    return 1;
 }
 
 /* Whether any point of the triangle is within the tolerance of every other. */
@@ -214,15 +267,14 @@ static int constant_suffices(const sides *s, uint32_t tolerance)
     return s->length[0] <= t && s->length[1] <= t && s->length[2] <= t;
 }
 
-static uint8_t choose_rung(const ew_raster *raster, const ew_basis *b, const ew_raster_vertex *const v[3], uint32_t w_min,
-                           int newton)
+static uint8_t choose_rung(ew_raster *raster, const ew_raster_vertex *const v[3], uint32_t w_min, uint32_t w_max, int newton)
 {
     const ew_material *m = &raster->material;
     sides s;
     if (m->rung != EW_RUNG_AUTO) return m->rung;
-    sides_init(&s, b, v);
+    sides_init(&s, &raster->work.now.setup.basis, v);
     if (m->tolerance > 0 && raster->texture.levels <= 1 && constant_suffices(&s, m->tolerance)) return EW_RUNG_CONSTANT;
-    if (affine_suffices(&s, m->tolerance, w_min)) return EW_RUNG_AFFINE;
+    if (affine_suffices(&raster->work.now.setup.move, &s, m->tolerance, w_min, w_max)) return EW_RUNG_AFFINE;
     return m->tolerance > 0 ? EW_RUNG_RUNS : newton ? EW_RUNG_EXACT : EW_RUNG_TABLE;
 }
 
@@ -267,7 +319,7 @@ static uint16_t sure_run_of(const ew_triangle *t, uint64_t dw, uint32_t w_min)
         const uint32_t step = (uint32_t)(dw >> 32) + 1u;
         const uint32_t far_end = w_min - w_min / 4 > step ? w_min - w_min / 4 - step : 0;
         const uint32_t n = ew_root16((far_end >> 15) * t->run_scale, t->run_exponent) >> 4;
-        most = 4u * n < t->run_tolerance ? 0 : smaller(n, most);
+        most = smaller(n, most);
     }
     return (uint16_t)smaller(most, t->longest);
 }
@@ -319,6 +371,14 @@ static int32_t attribute(int32_t d, uint32_t w, int bits, int affine)
     //@ assert within_bits: -(1 << bits) < d < 1 << bits;
     if (affine) return d * ((int32_t)1 << (EW_BITS_MOST - bits));
     return EW_ASR(ew_mulh_s32(d * ((int32_t)1 << (31 - bits)), (int32_t)w), 2); /* d w' 2^(31 - bits - 32 - 2) */
+}
+
+/* What the affine rung has at corner 0 instead of 0, from the differences of corners 1 and 2. */
+static uint32_t moved(const int32_t d[2], const ew_affine_move *by)
+{
+    if (by->share == 0) return 0;
+    const int32_t along = by->side == 0 ? d[0] : by->side == 1 ? d[1] : d[1] - d[0];
+    return (uint32_t)ew_mulh_s32(along, by->share);
 }
 
 static uint8_t plainness(const ew_raster *raster, uint32_t w_min, uint32_t w_max)
@@ -390,7 +450,8 @@ int ew_setup(ew_raster *raster)
     }
     basis_of_vertices(b, c);
     int needs_newton = t->uv_bits > TABLE_REACH;
-    t->rung = t->attributes ? choose_rung(raster, b, v, w_min, needs_newton) : EW_RUNG_CONSTANT;
+    raster->work.now.setup.move.share = 0;
+    t->rung = t->attributes ? choose_rung(raster, v, w_min, w_max, needs_newton) : EW_RUNG_CONSTANT;
     t->newton = (uint8_t)(t->rung == EW_RUNG_EXACT || (needs_newton && t->rung != EW_RUNG_TABLE));
 
     t->w_lead = (uint8_t)smaller((uint32_t)ew_clz32(w_max + w_max / 2), 24);
@@ -400,22 +461,20 @@ int ew_setup(ew_raster *raster)
     for (int k = 0; k < 2; k++) of->d[EW_PLANE_U][k] = of->d[EW_PLANE_V][k] = 0;
     if (has_texture) textured(t, of, raster, c, w, affine);
     if (has_shades) shaded(t, of, c, w, affine);
+    of->a0[EW_PLANE_W] = w[0];
+    for (int i = EW_PLANE_U; i <= t->attributes; i++) of->a0[i] = moved(of->d[i], &raster->work.now.setup.move);
     t->plain = plainness(raster, w_min, w_max);
     if (t->rung == EW_RUNG_CONSTANT) t->attributes = 0; /* corner 0's are taken everywhere */
 
+    t->walk = t->plain == PLAIN_ALWAYS && t->attributes == 2 ? WALK_TEXTURE : WALK_ANY;
     t->column = (uint16_t)c->from;
     uint32_t least = smaller(smaller(w[0], w[1]), w[2]);
     t->is_wide = (uint8_t)!is_narrow(b, c, least, larger(larger(w[0], w[1]), w[2]), t->uv_bits);
     if (t->is_wide) {
-        wide_planes(t, b, c, of, w[0], least);
+        wide_planes(t, b, c, of, least);
     } else {
-        ew_weights *g = &raster->work.now.setup.weights;
-        weights_init(g, b, c);
-        for (int i = 0; i <= t->attributes; i++) {
-            plane32_init(&t->plane.narrow[i], c, g, i == EW_PLANE_W ? w[0] : 0, of->d[i][0], of->d[i][1]);
-        }
+        narrow_planes(raster, t, c, of);
     }
     runs_init(t, raster, least);
-    t->is_quick = t->plain == PLAIN_ALWAYS && t->attributes == 2;
     return EW_OK;
 }

@@ -79,25 +79,42 @@ EW_ALWAYS_INLINE void pen_at(ew_pen *pen, const ew_raster *raster, int32_t x, in
     pen->x = (uint16_t)x, pen->y = (uint16_t)y;
 }
 
-/* n > 0 pixels, n at most EW_LONGEST_RUN, of a run with u and v at its first. The pen moves
- * behind the last. */
-EW_ALWAYS_INLINE void fill_pixels(ew_packing *k, const ew_triangle *t, ew_pen *pen, uint32_t u, uint32_t du,
-                                  uint32_t v, uint32_t dv, int32_t n)
+/* u and v at a pixel, or a step of theirs, in one number of 64 bits. */
+typedef struct packed {
+    uint32_t high, low;
+} packed;
+
+/* Top-aligned: 2^32 is the texture's size, so that repeating is the wrapping of 32 bits. */
+EW_ALWAYS_INLINE packed pack(const ew_packing *k, const ew_triangle *t, uint32_t u, uint32_t v)
 {
     const int log2_height = k->log2_height;
-    const uint32_t texel = ~k->low;
-    /* top-aligned: 2^32 is the texture's size, so that repeating is the wrapping of 32 bits */
     u = (u << t->u_shift) + t->u_base, v = (v << t->v_shift) + t->v_base;
+    return (packed){ (u & ~k->low) | v >> (32 - log2_height), v << log2_height };
+}
+
+/* v's step has a sign: extended over u's bits, or the sum would lose a borrow. */
+EW_ALWAYS_INLINE packed pack_step(const ew_packing *k, const ew_triangle *t, uint32_t du, uint32_t dv)
+{
+    const int log2_height = k->log2_height;
     du <<= t->u_shift, dv <<= t->v_shift;
-    uint32_t high = (u & texel) | v >> (32 - log2_height), low = v << log2_height;
-    /* v's step has a sign: extended over u's bits, or the sum would lose a borrow */
-    uint32_t dhigh = (du & texel) + (uint32_t)EW_ASR((int32_t)dv, 32 - log2_height), dlow = dv << log2_height;
+    return (packed){ (du & ~k->low) + (uint32_t)EW_ASR((int32_t)dv, 32 - log2_height), dv << log2_height };
+}
+
+EW_ALWAYS_INLINE void packed_add(packed *a, packed b)
+{
+    a->low += b.low;
+    a->high += b.high + (a->low < b.low ? 1u : 0u);
+}
+
+/* n > 0 pixels, n at most EW_LONGEST_RUN, of a run. The pen moves behind the last. */
+EW_ALWAYS_INLINE void fill_packed(ew_packing *k, ew_pen *pen, packed at, packed step, int32_t n)
+{
     uint16_t *c = pen->colour, *z = pen->depth;
     uint32_t w = pen->w, dw = pen->dw;
     pen->colour = c + n;
     pen->depth = z + n;
 #if EW_HAS_PIXEL_LOOP && !EW_TRACE
-    pen->w = ew_fill_pixels(k, c, z, n, w, dw, high, low, dhigh, dlow);
+    pen->w = ew_fill_pixels(k, c, z, n, w, dw, at.high, at.low, step.high, step.low);
 #else
     const uint16_t *texels = k->texels;
     const uint32_t mask = k->mask;
@@ -105,20 +122,27 @@ EW_ALWAYS_INLINE void fill_pixels(ew_packing *k, const ew_triangle *t, ew_pen *p
     for (int32_t i = 0; i < n; i++) {
         uint32_t d = w >> 15;
 #if EW_TRACE
-        uint32_t row = high << (32 - log2_height) | low >> log2_height; /* q20.12, modulo the texture's size */
-        ew_trace_fragment(pen->x++, pen->y, (uint16_t)d, (ew_q20_12)(high >> (20 - k->log2_width)),
+        const int log2_height = k->log2_height;
+        uint32_t row = at.high << (32 - log2_height) | at.low >> log2_height; /* q20.12, modulo the texture's size */
+        ew_trace_fragment(pen->x++, pen->y, (uint16_t)d, (ew_q20_12)(at.high >> (20 - k->log2_width)),
                           (ew_q20_12)(row >> (20 - log2_height)));
 #endif
         if (d > z[i]) {
             z[i] = (uint16_t)d;
-            c[i] = texels[(high << (32 - turn) | high >> turn) & mask];
+            c[i] = texels[(at.high << (32 - turn) | at.high >> turn) & mask];
         }
         w += dw;
-        low += dlow;
-        high += dhigh + (low < dlow ? 1u : 0u);
+        packed_add(&at, step);
     }
     pen->w = w;
 #endif
+}
+
+/* The same, with u and v at the first pixel and their steps. */
+EW_ALWAYS_INLINE void fill_pixels(ew_packing *k, const ew_triangle *t, ew_pen *pen, uint32_t u, uint32_t du,
+                                  uint32_t v, uint32_t dv, int32_t n)
+{
+    fill_packed(k, pen, pack(k, t, u, v), pack_step(k, t, du, dv), n);
 }
 
 /* u and v times w', and their steps, become the tangent at pixel n / 2 of a run of n, at its first. */
@@ -139,6 +163,8 @@ EW_ALWAYS_INLINE void advance(ew_linear *l, uint32_t n)
     l->v += l->dv * n;
 }
 
+enum { LEAST_MOVED = 8 };
+
 /* d t, for t in 1/16 px. */
 static uint32_t in_tolerance(uint32_t d, uint32_t tolerance)
 {
@@ -147,15 +173,15 @@ static uint32_t in_tolerance(uint32_t d, uint32_t tolerance)
 
 /* A tangent is off to one side only. Moved by the tolerance to the other side, it may be
  * sqrt 2 as long (docs/error-bound.md). Returns whether that can be done for a piece of n
- * pixels; where not, *by is left as it is. */
+ * pixels; otherwise *by is 0. */
 EW_NOINLINE int move_init(ew_move *by, const ew_triangle *t, const ew_linear *l, int32_t n)
 {
-    enum { LEAST = 8, MOST = 16 }; /* what lies up to 1 px outside of 8 is within the range of numbers */
+    enum { MOST = 16 }; /* what lies up to 1 px outside of LEAST_MOVED is within the range of numbers */
     const uint32_t tolerance = t->run_tolerance;
-    if (n < LEAST || tolerance == 0 || tolerance > MOST) return 0;
     const uint32_t sign = (int32_t)l->dw < 0 ? UINT32_MAX : 1u;
     const uint32_t fall = in_tolerance(l->dw * sign, tolerance);
-    if (l->w <= fall) return 0;
+    by->w = by->u = by->v = by->shade[0] = by->shade[1] = by->shade[2] = 0;
+    if (n < LEAST_MOVED || tolerance == 0 || tolerance > MOST || l->w <= fall) return 0;
     by->w = 0u - fall;
     by->u = 0u - in_tolerance(l->du, tolerance) * sign;
     by->v = 0u - in_tolerance(l->dv, tolerance) * sign;
@@ -175,17 +201,31 @@ EW_ALWAYS_INLINE void move(ew_linear *l, const ew_move *by, uint32_t sign, int a
 static int is_per_pixel(const ew_triangle *t) { return t->rung == EW_RUNG_TABLE || t->rung == EW_RUNG_EXACT; }
 static int is_affine(const ew_triangle *t) { return t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_CONSTANT; }
 
+/* What a piece's runs take, of n pixels; all spans of a triangle that are not cut, nor short, have the same
+ * but for those where 1/z is too small to be moved. */
+static void make_ready(ew_span_work *span, const ew_triangle *t, int32_t n)
+{
+    const ew_linear *l = &span->linear;
+    const int moved = move_init(&span->by, t, l, n);
+    ew_run_limit_init(&span->limit, t, l->dw, l->align, moved);
+    span->is_ready = moved && l->align == 0;
+    span->first = ew_run_first(&span->limit, l->w);
+}
+
 /* The first run of a piece of n pixels; span->linear is moved if that is to be. */
 EW_NOINLINE int32_t first_run(ew_span_work *span, const ew_triangle *t, int32_t n)
 {
     ew_linear *l = &span->linear;
     span->left = n;
-    span->by.w = span->by.u = span->by.v = span->by.shade[0] = span->by.shade[1] = span->by.shade[2] = 0;
-    if (is_per_pixel(t)) return 0;
+    if (is_per_pixel(t)) {
+        span->by.w = span->by.u = span->by.v = span->by.shade[0] = span->by.shade[1] = span->by.shade[2] = 0;
+        return 0;
+    }
     if (is_affine(t) || ew_one_run_suffices(t, l->w, l->dw, l->align, n)) return n;
-    ew_run_limit_init(&span->limit, t, l->dw, l->align, move_init(&span->by, t, l, n));
+    if (!span->is_ready || l->align || n < LEAST_MOVED || l->w <= 0u - span->by.w) make_ready(span, t, n);
     move(l, &span->by, 1, t->attributes);
-    return ew_run_first(&span->limit, l->w);
+    span->first = ew_run_near(&span->limit, l->w, span->first);
+    return span->first;
 }
 
 /* Whether a run of m pixels does not pay. */
@@ -202,20 +242,20 @@ EW_NOINLINE int32_t runs_of_texture(ew_packing *k, const ew_triangle *t, ew_span
     for (;;) {
         uint32_t u = l->u, du = l->du, v = l->v, dv = l->dv;
         m = smaller(m, span->left);
-        if (!is_affine(t)) tangent(t, l->w, l->dw, &u, &du, &v, &dv, m);
+        if (t->rung != EW_RUNG_AFFINE) tangent(t, l->w, l->dw, &u, &du, &v, &dv, m);
         fill_pixels(k, t, &span->fill.pen, u, du, v, dv, m);
         span->left -= m;
         if (span->left == 0) return 0;
         advance(l, (uint32_t)m);
-        m = ew_run_next(&span->limit, l->w, m);
-        if (is_short(t, span, m)) return m;
+        m = ew_run_after(&span->limit, l->w, m);
+        if (m < t->shortest && m < span->left) return m;
     }
 }
 
 /* A function of its own: pixels_of_texture needs its registers. */
 EW_NOINLINE int32_t next_run(const ew_span_work *span, int32_t n)
 {
-    return ew_run_next(&span->limit, span->linear.w, n);
+    return ew_run_near(&span->limit, span->linear.w, n);
 }
 
 /* All that are left of the piece, or as many as there may be before the next look whether a run
@@ -402,7 +442,7 @@ static void piece_of_any(ew_raster *raster, int32_t n)
         }
         span->left -= m;
         if (span->left == 0) return;
-        m = ew_run_next(&span->limit, span->linear.w, m);
+        m = ew_run_near(&span->limit, span->linear.w, m);
     }
 }
 
@@ -446,13 +486,11 @@ EW_NOINLINE int start_piece(ew_raster *raster, int32_t x, int32_t y, int32_t n)
     return 0;
 }
 
-/* work.linear from x on. */
-EW_NOINLINE void start_narrow(ew_raster *raster, int32_t x)
+/* A span from x on. */
+EW_NOINLINE void start_narrow(ew_linear *l, const ew_triangle *t, int32_t x)
 {
-    const ew_triangle *t = &raster->work.triangle;
     const ew_plane32 *p = &t->plane.narrow[EW_PLANE_SHADE];
     const uint32_t columns = (uint32_t)(x - t->column);
-    ew_linear *l = &raster->work.now.span.linear;
     EW_KEEP_ORDER(t);
     EW_KEEP_ORDER(l);
     l->align = 0;
@@ -567,50 +605,118 @@ EW_NOINLINE void span_of_texture(ew_raster *raster, const ew_triangle *t, int32_
     pen_at(pen, raster, x, y);
     while (n > 0) {
         int32_t m = n;
-        if (t->is_wide && !steps_suffice(t, l->w, l->w + l->dw * (uint32_t)(n - 1), n)) m = next_of_wide(raster, t, x, n);
+        if (!t->is_wide) {
+            start_narrow(l, t, x);
+        } else {
+            wide_start(l, t, x);
+            if (!steps_suffice(t, l->w, l->w + l->dw * (uint32_t)(n - 1), n)) m = next_of_wide(raster, t, x, n);
+        }
         const int down = (int)smaller(t->w_lead + l->align, 31);
         pen->w = depth_of(l->w, down), pen->dw = depth_step(l->dw, down);
         piece_of_texture(raster, t, m);
         x += m;
         n -= m;
-        if (n > 0) wide_start(l, t, x);
     }
+}
+
+/* A span that is one run, surely. */
+EW_ALWAYS_INLINE void run_of_texture(ew_raster *raster, const ew_triangle *t, int32_t x, int32_t y, int32_t n)
+{
+    uint32_t w, dw, u, du, v, dv;
+    ew_pen pen; /* in registers */
+    if (t->is_wide) {
+        ew_linear *l = &raster->work.now.span.linear;
+        EW_KEEP_ORDER(l);
+        wide_start(l, t, x);
+        w = l->w, dw = l->dw, u = l->u, du = l->du, v = l->v, dv = l->dv;
+    } else {
+        const ew_plane32 *p = t->plane.narrow;
+        const uint32_t columns = (uint32_t)(x - t->column);
+        dw = p[EW_PLANE_W].dx, du = p[EW_PLANE_U].dx, dv = p[EW_PLANE_V].dx;
+        w = p[EW_PLANE_W].row + dw * columns;
+        u = p[EW_PLANE_U].row + du * columns;
+        v = p[EW_PLANE_V].row + dv * columns;
+    }
+    pen_at(&pen, raster, x, y);
+    pen.w = depth_of(w, t->w_lead), pen.dw = depth_step(dw, t->w_lead);
+    if (t->rung != EW_RUNG_AFFINE) tangent(t, w, dw, &u, &du, &v, &dv, n);
+    fill_pixels(&raster->work.packing, t, &pen, u, du, v, dv, n);
 }
 
 EW_HOT int ew_rows_of_texture(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
 {
-    ew_plane32 *p = t->plane.narrow;
-    ew_linear *l = &raster->work.now.span.linear;
     int reached = 0;
-    EW_KEEP_ORDER(l);
+    raster->work.now.span.is_ready = 0;
     for (; row < end; row++) {
         const int32_t x = larger(edge[0].x, raster->scissor.x0), n = smaller(edge[1].x, raster->scissor.x1) - x;
         if (n > 0) {
-            uint32_t w, dw, u, du, v, dv;
-            if (t->is_wide) {
-                wide_start(l, t, x);
-                w = l->w, dw = l->dw, u = l->u, du = l->du, v = l->v, dv = l->dv;
-            } else {
-                const uint32_t columns = (uint32_t)(x - t->column);
-                dw = p[EW_PLANE_W].dx, du = p[EW_PLANE_U].dx, dv = p[EW_PLANE_V].dx;
-                w = p[EW_PLANE_W].row + dw * columns;
-                u = p[EW_PLANE_U].row + du * columns;
-                v = p[EW_PLANE_V].row + dv * columns;
-            }
-            if (n <= t->sure_run) {
-                ew_pen pen; /* in registers */
-                pen_at(&pen, raster, x, row);
-                pen.w = depth_of(w, t->w_lead), pen.dw = depth_step(dw, t->w_lead);
-                if (t->rung != EW_RUNG_AFFINE) tangent(t, w, dw, &u, &du, &v, &dv, n);
-                fill_pixels(&raster->work.packing, t, &pen, u, du, v, dv, n);
-            } else {
-                l->w = w, l->dw = dw, l->u = u, l->du = du, l->v = v, l->dv = dv;
-                l->align = 0;
-                span_of_texture(raster, t, x, row, n);
-            }
+            if (n <= t->sure_run) run_of_texture(raster, t, x, row, n);
+            else span_of_texture(raster, t, x, row, n);
             reached = 1;
         }
         planes_step(t, t->is_wide, 2);
+        ew_edge_step(&edge[0]);
+        ew_edge_step(&edge[1]);
+    }
+    return reached;
+}
+
+/* ---- rows of packed planes ---- */
+
+/* Planes of u and v become one of both packed: steps lose as much, in all of a triangle's rows and columns, as
+ * in one long run (docs/error-bound.md). 1/z cannot become depth: outside of the triangle, where planes begin,
+ * it may be of any size, and shifted to the right it would not come back. */
+void ew_planes_pack(ew_triangle *t, const ew_packing *k)
+{
+    ew_plane32 *high = &t->plane.narrow[EW_PLANE_U], *low = &t->plane.narrow[EW_PLANE_V];
+    const packed row = pack(k, t, high->row, low->row), dx = pack_step(k, t, high->dx, low->dx);
+    const packed dy = pack_step(k, t, high->dy, low->dy);
+    high->row = row.high, high->dx = dx.high, high->dy = dy.high;
+    low->row = row.low, low->dx = dx.low, low->dy = dy.low;
+}
+
+EW_ALWAYS_INLINE packed packed_row(const ew_plane32 p[])
+{
+    return (packed){ p[EW_PLANE_U].row, p[EW_PLANE_V].row };
+}
+EW_ALWAYS_INLINE packed packed_dx(const ew_plane32 p[]) { return (packed){ p[EW_PLANE_U].dx, p[EW_PLANE_V].dx }; }
+EW_ALWAYS_INLINE packed packed_dy(const ew_plane32 p[]) { return (packed){ p[EW_PLANE_U].dy, p[EW_PLANE_V].dy }; }
+
+/* n steps behind a; n < 2^16. */
+EW_ALWAYS_INLINE packed packed_after(packed a, packed step, uint32_t n)
+{
+    const uint64_t low = ew_mul_u32_u16(step.low, n);
+    packed_add(&a, (packed){ step.high * n + (uint32_t)(low >> 32), (uint32_t)low });
+    return a;
+}
+
+void ew_planes_go(ew_triangle *t, uint32_t columns, uint32_t rows)
+{
+    ew_plane32 *p = t->plane.narrow;
+    const packed at = packed_after(packed_after(packed_row(p), packed_dx(p), columns), packed_dy(p), rows);
+    for (int i = 0; i <= t->attributes; i++) p[i].row += p[i].dx * columns + p[i].dy * rows;
+    if (t->walk == WALK_PACKED) p[EW_PLANE_U].row = at.high, p[EW_PLANE_V].row = at.low;
+}
+
+EW_HOT int ew_rows_packed(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
+{
+    ew_plane32 *p = t->plane.narrow;
+    int reached = 0;
+    for (; row < end; row++) {
+        const int32_t x = larger(edge[0].x, raster->scissor.x0), n = smaller(edge[1].x, raster->scissor.x1) - x;
+        if (n > 0) {
+            const uint32_t columns = (uint32_t)(x - t->column);
+            ew_pen pen; /* in registers */
+            pen_at(&pen, raster, x, row);
+            pen.w = depth_of(p[EW_PLANE_W].row + p[EW_PLANE_W].dx * columns, t->w_lead);
+            pen.dw = depth_step(p[EW_PLANE_W].dx, t->w_lead);
+            fill_packed(&raster->work.packing, &pen, packed_after(packed_row(p), packed_dx(p), columns), packed_dx(p), n);
+            reached = 1;
+        }
+        packed at = packed_row(p);
+        packed_add(&at, packed_dy(p));
+        p[EW_PLANE_W].row += p[EW_PLANE_W].dy;
+        p[EW_PLANE_U].row = at.high, p[EW_PLANE_V].row = at.low;
         ew_edge_step(&edge[0]);
         ew_edge_step(&edge[1]);
     }
@@ -623,7 +729,7 @@ static void span_of_any(ew_raster *raster, int32_t x, int32_t y, int32_t n)
     while (n > 0) {
         int32_t m = n;
         if (t->is_wide) m = next_of_wide(raster, t, x, n);
-        else start_narrow(raster, x);
+        else start_narrow(&raster->work.now.span.linear, t, x);
         if (start_piece(raster, x, y, m)) {
             piece_of_texture(raster, t, m);
         } else {
@@ -639,6 +745,7 @@ EW_HOT int ew_rows_of_any(ew_raster *raster, int32_t row, int32_t end)
     ew_triangle *t = &raster->work.triangle;
     ew_edge *edge = raster->work.edge;
     int reached = 0;
+    raster->work.now.span.is_ready = 0;
     for (; row < end; row++) {
         int32_t x = larger(edge[0].x, raster->scissor.x0), n = smaller(edge[1].x, raster->scissor.x1) - x;
         if (n > 0) {

@@ -91,11 +91,17 @@ static int set_up(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_
     return 1;
 }
 
-/* Rows of work.triangle between two changes of edges. */
+/* Rows between two changes of edges of a triangle that needs no fill to be looked for. */
+EW_ALWAYS_INLINE int draw_quick(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
+{
+    return t->walk == WALK_PACKED ? ew_rows_packed(raster, t, edge, row, end) : ew_rows_of_texture(raster, t, edge, row, end);
+}
+
+/* The same of work.triangle, whatever it needs. */
 EW_ALWAYS_INLINE int draw_some(ew_raster *raster, int32_t row, int32_t end)
 {
     ew_triangle *t = &raster->work.triangle;
-    return t->is_quick ? ew_rows_of_texture(raster, t, raster->work.edge, row, end) : ew_rows_of_any(raster, row, end);
+    return t->walk == WALK_ANY ? ew_rows_of_any(raster, row, end) : draw_quick(raster, t, raster->work.edge, row, end);
 }
 
 /* Draws the rows of work.triangle above `end`. */
@@ -141,7 +147,7 @@ int ew_raster_draw_begun(ew_raster *raster)
 }
 
 /* What an ew_active keeps of a triangle: the head, as many planes as there are, and behind these,
- * unless it is quick, what generic fills need. */
+ * unless it is not theirs, what generic fills need. */
 enum { HEAD_BYTES = offsetof(ew_triangle, plane), TAIL_BYTES = sizeof(ew_triangle) - offsetof(ew_triangle, u_origin) };
 
 static size_t plane_bytes(const ew_triangle *t)
@@ -151,7 +157,7 @@ static size_t plane_bytes(const ew_triangle *t)
 
 size_t ew_active_bytes(const ew_triangle *t)
 {
-    const size_t bytes = HEAD_BYTES + plane_bytes(t) + (t->is_quick ? 0 : TAIL_BYTES);
+    const size_t bytes = HEAD_BYTES + plane_bytes(t) + (t->walk == WALK_ANY ? TAIL_BYTES : 0);
     return (offsetof(ew_active, triangle) + bytes + 7u) / 8u * 8u;
 }
 
@@ -180,7 +186,7 @@ void ew_raster_keep(ew_raster *raster, ew_active *active)
     const ew_triangle *t = &raster->work.triangle;
     EW_COPY(&active->triangle, t, HEAD_BYTES);
     copy_planes(&active->triangle, t);
-    if (!t->is_quick) EW_COPY((uint8_t *)&active->triangle.plane + plane_bytes(t), &t->u_origin, TAIL_BYTES);
+    if (t->walk == WALK_ANY) EW_COPY((uint8_t *)&active->triangle.plane + plane_bytes(t), &t->u_origin, TAIL_BYTES);
 }
 
 /* Generic fills only know work.triangle. Copying has frames of its own: it needs many registers. */
@@ -221,7 +227,7 @@ EW_NOINLINE int draw_part(ew_raster *raster, ew_active *active, int32_t end)
     const int32_t row = active->row;
     active->row = (uint16_t)end;
     if (row == active->turn) start_lowest_edge(active);
-    if (active->triangle.is_quick) return ew_rows_of_texture(raster, &active->triangle, active->edge, row, end);
+    if (active->triangle.walk != WALK_ANY) return draw_quick(raster, &active->triangle, active->edge, row, end);
     copy_to_work(raster, active);
     const int reached = ew_rows_of_any(raster, row, end);
     copy_from_work(active, raster);
@@ -232,9 +238,9 @@ int ew_raster_draw_active(ew_raster *raster, ew_active *active)
 {
     const int32_t end = smaller(active->end, raster->scissor.y1), row = active->row, turn = active->turn;
     if (row >= end) return 0;
-    if (active->triangle.is_quick && (row > turn || end <= turn)) {
+    if (active->triangle.walk != WALK_ANY && (row > turn || end <= turn)) {
         active->row = (uint16_t)end;
-        return ew_rows_of_texture(raster, &active->triangle, active->edge, row, end);
+        return draw_quick(raster, &active->triangle, active->edge, row, end);
     }
     int reached = 0;
     if (row < turn && turn < end) reached = draw_part(raster, active, turn);
