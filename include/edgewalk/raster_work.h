@@ -100,7 +100,7 @@ typedef struct ew_basis {
     int32_t dx1, dy1, dx2, dy2; /* q20.12, |d| <= 2^30                                      */
     int64_t area;               /* dx1 dy2 - dx2 dy1, |area| <= 2^61                        */
     uint32_t reach;             /* the largest |d|                                          */
-    int32_t to_x, to_y;         /* from corner 0 to the pixel where planes stand, q20.12    */
+    int32_t to_x, to_y;         /* from corner 0 to the box's first pixel, q20.12           */
 } ew_basis;
 
 /* Gradients of the weights of corners 1 and 2, per q20.12 unit times 2^shift / 4096. */

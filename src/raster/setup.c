@@ -25,8 +25,8 @@ static EW_OWN_FRAME void basis_init(ew_basis *b, int32_t x, int32_t y, const ew_
 {
     b->area = ew_mul_s32(b->dx1, b->dy2) - ew_mul_s32(b->dx2, b->dy1);
     b->reach = larger(larger(ew_abs32(b->dx1), ew_abs32(b->dx2)), larger(ew_abs32(b->dy1), ew_abs32(b->dy2)));
-    b->to_x = c->from * 4096 + 2048 - x;
-    b->to_y = c->first * 4096 + 2048 - y;
+    b->to_x = c->x0 * 4096 + 2048 - x;
+    b->to_y = c->y0 * 4096 + 2048 - y;
 }
 
 static void basis_of_vertices(ew_basis *b, const ew_corners *c)
@@ -59,7 +59,7 @@ static int is_narrow(const ew_basis *b, const ew_corners *c, uint32_t w_min, uin
            (uint64_t)(3 * steps + 16) << bits <= (uint64_t)w_min << 2; /* 2^11 2^27, of 256 px */
 }
 
-static void weights_init(ew_weights *g, const ew_basis *b, const ew_corners *c)
+static void weights_init(ew_weights *g, const ew_basis *b)
 {
     int up = ew_clz32(b->reach) - 1;
     uint64_t area = ew_abs64(b->area);
@@ -79,12 +79,11 @@ static void weights_init(ew_weights *g, const ew_basis *b, const ew_corners *c)
     /* d / area = weight 2^(zeros - 94 + 32 - up); 2^12 more for a pixel */
     g->shift = 50 - zeros + up;
     /* a pixel within a pixel of the box: at most 16 heights away */
-    const int32_t x = b->to_x - (c->from - c->x0) * 4096, y = b->to_y - (c->first - c->y0) * 4096; /* 2^21 */
-    g->there1 = (int32_t)EW_ASR(ew_mul_s32(g->x1, x) + ew_mul_s32(g->y1, y), g->shift - 14);
-    g->there2 = (int32_t)EW_ASR(ew_mul_s32(g->x2, x) + ew_mul_s32(g->y2, y), g->shift - 14);
+    g->there1 = (int32_t)EW_ASR(ew_mul_s32(g->x1, b->to_x) + ew_mul_s32(g->y1, b->to_y), g->shift - 14); /* 2^30 2^21 */
+    g->there2 = (int32_t)EW_ASR(ew_mul_s32(g->x2, b->to_x) + ew_mul_s32(g->y2, b->to_y), g->shift - 14);
 }
 
-/* With the value at the box's first pixel, from the weights there. |d| < 2^31. */
+/* |d| < 2^31. */
 static void plane32_init(ew_plane32 *p, const ew_weights *g, uint32_t a0, int32_t d1, int32_t d2)
 {
     p->row = a0 + (uint32_t)EW_ASR(ew_mul_s32(d1, g->there1) + ew_mul_s32(d2, g->there2), 26);
@@ -92,20 +91,12 @@ static void plane32_init(ew_plane32 *p, const ew_weights *g, uint32_t a0, int32_
     p->dy = (uint32_t)EW_ASR(ew_mul_s32(d1, g->y1) + ew_mul_s32(d2, g->y2), g->shift);
 }
 
-/* Planes of 32 bits begin at the box's first pixel and are taken in whole steps to where the row begins:
- * wherever a scissor cuts, the bits are the same. */
-static void narrow_planes(ew_raster *raster, ew_triangle *t, const ew_corners *c, const ew_differences *of)
+static void narrow_planes(ew_triangle *t, ew_weights *g, const ew_basis *b, const ew_differences *of)
 {
-    ew_weights *g = &raster->work.now.setup.weights;
-    weights_init(g, &raster->work.now.setup.basis, c);
+    weights_init(g, b);
     for (int i = 0; i <= t->attributes; i++) {
         plane32_init(&t->plane.narrow[i], g, of->a0[i], of->d[i][0], of->d[i][1]);
     }
-    if (t->walk == WALK_TEXTURE && t->rung == EW_RUNG_AFFINE && c->steps <= EW_LONGEST_RUN) {
-        t->walk = WALK_PACKED;
-        ew_planes_pack(t, &raster->work.packing);
-    }
-    if (c->from > c->x0 || c->first > c->y0) ew_planes_go(t, (uint32_t)(c->from - c->x0), (uint32_t)(c->first - c->y0));
 }
 
 /* ---- wide triangles ---- */
@@ -180,6 +171,26 @@ static void wide_planes(ew_triangle *t, ew_basis *b, const ew_corners *c, const 
     for (int i = 0; i <= t->attributes; i++) {
         plane64_init(&t->plane.wide[i], b, r, zeros, of->a0[i], of->d[i][0], of->d[i][1]);
     }
+}
+
+/* ---- affine triangles ---- */
+
+/* Whether planes of 32 bits will do for the affine rung, and u and v packed: steps over all rows and columns lose
+ * at most 1/128 texel as in steps_suffice (span.c), and packed ones 1/256. */
+static int may_be_packed(const ew_triangle *t, const ew_corners *c)
+{
+    return t->walk == WALK_TEXTURE && t->rung == EW_RUNG_AFFINE && c->steps <= EW_LONGEST_RUN &&
+           (uint32_t)c->steps << (t->uv_bits - EW_BITS_LEAST) <= UINT32_C(1) << (32 - EW_BITS_LEAST); /* 2^8 2^8 */
+}
+
+/* The upper halves of wide planes, in place. */
+static void narrow_down(ew_triangle *t)
+{
+    for (int i = 0; i <= t->attributes; i++) { /* each lies at or in front of what it is made of */
+        const ew_plane64 wide = t->plane.wide[i];
+        t->plane.narrow[i] = (ew_plane32){ (uint32_t)(wide.row >> 32), (uint32_t)(wide.dx >> 32), (uint32_t)(wide.dy >> 32) };
+    }
+    t->is_wide = 0;
 }
 
 /* ---- the ladder ---- */
@@ -341,6 +352,7 @@ static void runs_init(ew_triangle *t, const ew_raster *raster, uint32_t w_min)
                                      (uint64_t)ew_abs32((int32_t)t->plane.narrow[EW_PLANE_W].dx) << 32;
     const int automatic = raster->material.rung == EW_RUNG_AUTO;
     t->run_tolerance = t->sure_run = 0;
+    if (t->walk == WALK_PACKED) return;
     if (t->rung == EW_RUNG_TABLE || t->rung == EW_RUNG_EXACT) {
         /* where 1/z does not change along rows, a run is exact whatever its length */
         if (dw != 0 || !automatic) return;
@@ -422,6 +434,8 @@ static void shaded(ew_triangle *t, ew_differences *of, const ew_corners *c, cons
     }
 }
 
+/* Planes begin at the box's first pixel and are taken from there in whole steps: wherever a scissor cuts, the
+ * bits are the same. */
 int ew_setup(ew_raster *raster)
 {
     ew_triangle *t = &raster->work.triangle;
@@ -470,11 +484,14 @@ int ew_setup(ew_raster *raster)
     t->column = (uint16_t)c->from;
     uint32_t least = smaller(smaller(w[0], w[1]), w[2]);
     t->is_wide = (uint8_t)!is_narrow(b, c, least, larger(larger(w[0], w[1]), w[2]), t->uv_bits);
-    if (t->is_wide) {
-        wide_planes(t, b, c, of, least);
-    } else {
-        narrow_planes(raster, t, c, of);
+    if (t->is_wide) wide_planes(t, b, c, of, least);
+    else narrow_planes(t, &raster->work.now.setup.weights, b, of);
+    if (may_be_packed(t, c)) {
+        if (t->is_wide) narrow_down(t);
+        t->walk = WALK_PACKED;
+        ew_planes_pack(t, &raster->work.packing);
     }
+    if (c->from > c->x0 || c->first > c->y0) ew_planes_go(t, (uint32_t)(c->from - c->x0), (uint32_t)(c->first - c->y0));
     runs_init(t, raster, least);
     return EW_OK;
 }

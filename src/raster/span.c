@@ -693,9 +693,16 @@ EW_ALWAYS_INLINE packed packed_after(packed a, packed step, uint32_t n)
 void ew_planes_go(ew_triangle *t, uint32_t columns, uint32_t rows)
 {
     ew_plane32 *p = t->plane.narrow;
-    const packed at = packed_after(packed_after(packed_row(p), packed_dx(p), columns), packed_dy(p), rows);
-    for (int i = 0; i <= t->attributes; i++) p[i].row += p[i].dx * columns + p[i].dy * rows;
-    if (t->walk == WALK_PACKED) p[EW_PLANE_U].row = at.high, p[EW_PLANE_V].row = at.low;
+    ew_plane64 *q = t->plane.wide;
+    const int packed_ones = t->walk == WALK_PACKED ? 2 : 0;
+    if (packed_ones) { /* of 256 rows and columns at most */
+        const packed at = packed_after(packed_after(packed_row(p), packed_dx(p), columns), packed_dy(p), rows);
+        p[EW_PLANE_U].row = at.high, p[EW_PLANE_V].row = at.low;
+    }
+    for (int i = 0; i <= t->attributes - packed_ones; i++) {
+        if (t->is_wide) q[i].row += q[i].dx * columns + q[i].dy * rows;
+        else p[i].row += p[i].dx * columns + p[i].dy * rows;
+    }
 }
 
 EW_HOT int ew_rows_packed(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)

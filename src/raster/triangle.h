@@ -37,7 +37,7 @@ int ew_setup(ew_raster *raster);
 /* Makes planes packed ones. */
 void ew_planes_pack(ew_triangle *t, const ew_packing *packing);
 
-/* Takes a narrow triangle's planes some columns to the right and rows down. */
+/* Takes planes some columns to the right and rows down. */
 void ew_planes_go(ew_triangle *t, uint32_t columns, uint32_t rows);
 
 /* Draw rows from `row` to below `end` of a triangle whose edges and planes stand on `row`, cut to
