@@ -110,7 +110,7 @@ def panel(script, name, title, rows, marks, speed, error, bits):
     return True
 
 
-HEAD = ["set logscale xy", "set grid lc rgb '#e4e4e4'", "set format x '%g'", "set format y '%g'",
+HEAD = ["set logscale xy", "set grid lt 1 lc rgb '#e4e4e4'", "set format x '%g'", "set format y '%g'",
         "set key below samplen 1.5 font ',10'", "set bmargin 8", "set border 3", "set tics nomirror"]
 
 

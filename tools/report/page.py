@@ -4,6 +4,7 @@ import os
 
 import atlas
 import charts
+import memory
 import model
 import tables
 
@@ -134,7 +135,7 @@ def scene_section(scene, names, differing):
 
 AXES = {
     "depth_ratio_less_1": "farthest over nearest z along 240 pixels, less 1",
-    "far_horizon_near_over_z": "near/z of a wall: how far away it is",
+    "far_horizon_near_over_z": "near/z of a wall whose far end is twice as far; beyond the line it has one depth value, its texture is still right",
     "sliver_height_px": "height of slivers across the screen", "tiny_triangle_side_px": "side of the cells of a net of triangles",
     "span_px": "length of a span along which 1/z falls to 60 %", "uv_range_texels": "texels from corner to corner",
     "guard_half_width_px": "half the width of a triangle that stands over the screen",
@@ -150,6 +151,10 @@ AXES = {
     "slerp_angle_rad": "angle between two rotation keys", "slerp_short_of_half_turn_rad": "what that angle lacks to half a turn",
     "slerp_key_length": "length of a key that is not normalised", "chain_length": "matrices in a chain",
     "chain_of_10_to_4_length": "matrices in a chain that each scale by 10,000",
+    "sliver_width_px": "the same from top to bottom",
+    "line_active_triangles": "triangles active on every row, drawn line by line with room for fewer: the same picture, slower",
+    "line_memory_bytes": "bytes for 200 active triangles, line by line: set up once down to the first line, drawn down to the second",
+    "link_reports_lost": "part of the display's reports that are lost; 27 to a key frame; what is shown is never torn",
     "near_plane_z_over_near": "z of a floor's near corners over the near distance: at the eye and behind it too",
 }
 
@@ -175,6 +180,24 @@ loop, so the lines over texels end there; the chart shows the step. <a href="wor
 display's rate hangs on the worst frame, not on the mean. <a href="frames.csv">frames.csv</a></p>
 {table(["target, scene", "frames", "mean instructions", "worst", "frame", "mean cycles", "worst", "worst / mean"], worst)}
 <div class="grid">{charts_of(names)}</div>"""
+
+
+def memory_section(rows, names):
+    shown = [row for row in memory.named(rows) if row["target"] == (MEMORY_TARGET if any(r[0] == MEMORY_TARGET for r in rows) else rows[0][0])]
+    lines = [[f"{row['scene']}, {row['mode']}", f"{row['ram_bytes']:,}", "-" if row["goal_bytes"] == "na" else f"{row['goal_bytes']:,}",
+              f"{row['instructions']:,}", f"{row['of_at_once']}", str(row["active"]), str(row["set_up_again"])] for row in shown]
+    more = "".join(f"<details><summary>{text} against RAM</summary><div class='grid'>{charts_of(of_speed)}</div></details>"
+                   for text, of_speed in list(zip(memory.SPEEDS.values(), names.values()))[:1] if names["cycles_typical"])
+    return f"""<p>One picture of 320 x 240 pixels, drawn at once, in bands of 32, 16, 8 and 4 rows, and line by line: the same bit for bit.
+RAM is what it takes beside the scene and its objects, colour and depth buffers included; with less of it, triangles that reach over
+several bands are kept or set up again. Automatic choice at 1/4 pixel; the clear is counted. Each line is a scene, its right end the
+picture at once, its left end line by line. <a href="memory.csv">memory.csv</a></p>
+<div class="grid">{charts_of(names["cycles_typical"] or names["instructions"])}</div>{more}
+<details><summary>The figures of {shown[0]["target"]}</summary>{table(["scene, mode", "RAM, bytes", "goal", "instructions", "of at once",
+ "active at most", "set up again"], lines)}</details>"""
+
+
+MEMORY_TARGET = "m3"
 
 
 def size_section(sizes, stacks, names):
@@ -262,7 +285,7 @@ def check_images(out, text):
             raise tables.Failed(f"{path}: the page shows it, and it is not there")
 
 
-def write(out, rows, auto, names, differing, bits, worked, versions):
+def write(out, rows, auto, names, differing, bits, worked, in_memory, versions):
     scenes = list(dict.fromkeys(row["scene"] for row in rows))
     text = f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
@@ -270,7 +293,7 @@ def write(out, rows, auto, names, differing, bits, worked, versions):
 <h1>edgewalk: speed against accuracy</h1>
 <p>edgewalk is a fixed-point 3D rasterizer for microcontrollers that is told how much error a scene can bear and does no more work
 than that. This page shows what each way of drawing a texture costs on six processors, and how far from the truth it is.</p>
-<nav><a href="#cost">Cost</a> <a href="#accuracy">Accuracy</a> <a href="#auto">The automatic choice</a> <a href="#work">Cost against work</a>
+<nav><a href="#cost">Cost</a> <a href="#accuracy">Accuracy</a> <a href="#auto">The automatic choice</a> <a href="#work">Cost against work</a> <a href="#memory">RAM against speed</a>
 <a href="#size">Flash and stack</a> <a href="#stability">Where methods fail</a>
 {" ".join(f'<a href="#scene-{scene}">Scene {scene}</a>' for scene in scenes)} <a href="#how">How it was measured</a></nav>
 
@@ -296,6 +319,9 @@ table sizes; <a href="auto.csv">auto.csv</a> names both for every case.</p>
 
 <h2 id="work">Cost against work</h2>
 {work_section(worked[0], worked[1], worked[4])}
+
+<h2 id="memory">RAM against speed</h2>
+{memory_section(*in_memory)}
 
 <h2 id="size">Flash and stack</h2>
 {size_section(worked[2], worked[3], worked[5])}

@@ -86,7 +86,7 @@ def chart(script, name, title, x_text, y_text, series, logarithmic=True):
     for i, (_, _, points) in enumerate(series):
         script += [f"$s{i} << EOD", *(f"{x} {y}" for x, y in points), "EOD"]
     plots = [f"$s{i} using 1:2 with linespoints pt 7 ps 0.6 lw 2 lc rgb '{colour}' title '{label}'" for i, (label, colour, _) in enumerate(series)]
-    script += ["reset", "set grid lc rgb '#e4e4e4'", "set key below samplen 1.5", "set border 3", "set tics nomirror", "set bmargin 6.5",
+    script += ["reset", "set grid lt 1 lc rgb '#e4e4e4'", "set key below samplen 1.5", "set border 3", "set tics nomirror", "set bmargin 6.5",
                "set format '%g'", "set logscale xy" if logarithmic else "set yrange [0:*]", f"set title '{title}'", f"set xlabel '{x_text}'",
                f"set ylabel '{y_text}'"]
     output(script, name, "plot " + ", ".join(plots))
@@ -119,7 +119,7 @@ def draw(folder, rows, sizes, stacks):
         builds = list(dict.fromkeys(build for build, _ in cells))
         for configuration in configurations:
             script.append(f'"{configuration}" ' + " ".join(str(cells[build, configuration]) for build in builds))
-        script += ["EOD", "set style data histograms", "set style fill solid", "set boxwidth 0.9", "set grid y lc rgb '#e4e4e4'", "set border 3",
+        script += ["EOD", "set style data histograms", "set style fill solid", "set boxwidth 0.9", "set grid y lt 1 lc rgb '#e4e4e4'", "set border 3",
                    "set key above", "set xtics rotate by -28 nomirror", "set ytics nomirror", "set bmargin 9", "set rmargin 10", "set yrange [0:*]",
                    f"set title '{title}'", f"set ylabel '{unit}'"]
         if name == "size-stack":
