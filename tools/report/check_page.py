@@ -11,7 +11,7 @@ import re
 import subprocess
 import sys
 
-PIECE = 1800  # px of the page to a screenshot
+PIECE = 3600  # px of the page to a screenshot
 PROBE = """<script>addEventListener('load', () => {
     const broken = [...document.images].filter(i => !i.complete || !i.naturalWidth).map(i => i.getAttribute('src'));
     document.title = 'broken: ' + broken.length + ' ' + broken.slice(0, 3).join(' ') + '; images: ' + document.images.length +
@@ -47,7 +47,7 @@ class Probe:
     def load(self, text, head, *options):
         with open(self.path, "w", encoding="utf-8") as f:
             f.write(text.replace("</head>", head + "</head>"))
-        return chromium(*options, "--virtual-time-budget=60000", "file://" + self.path)
+        return chromium(*options, "--virtual-time-budget=20000", "file://" + self.path)
 
     def title(self, text, width):
         """What the probe says, and console messages."""
