@@ -104,7 +104,7 @@ def label(axis):
 def draw(folder, rows):
     """Charts of err_px (wrong pixels for separations of depth) against x; their names."""
     os.makedirs(folder, exist_ok=True)
-    script, names, axes = ["set grid lt 1 lc rgb '#e4e4e4'", "set key below maxcols 4 samplen 1.5 font ',11'", "set bmargin 6.5", "set logscale xy",
+    script, names, axes = ["set grid lt 1 lc rgb '#e4e4e4'", "set key below maxcols 4 samplen 1.5 font ',11'", "set bmargin 7.5", "set logscale xy",
                            "set format '%g'", "set border 3", "set tics nomirror"], [], {}
     for (axis, method), own in groups(rows).items():
         axes.setdefault(axis, {})[method] = own
@@ -113,7 +113,9 @@ def draw(folder, rows):
         plots, predicted = [], []
         for i, (method, own) in enumerate(methods.items()):
             script.append(f"$d{len(names)}_{i} << EOD")
-            for row in own:
+            for before, row in zip([own[0], *own], own):
+                if row["state"] != before["state"] and "refused" in (row["state"], before["state"]):
+                    script.append("")  # no line from what was drawn to what was refused
                 y = max(float(row["wrong_px"]), 0.1) if depth else max(float(row["err_px"]), 1 / 4096)
                 script.append(f"{row['x']} {y:.6g} {({'ok': 7, 'degraded': 6, 'refused': 2})[row['state']]}")
             script.append("EOD")
