@@ -311,8 +311,8 @@ def write(out, rows, auto, names, differing, bits, worked, in_memory, versions):
 <title>edgewalk: speed against accuracy</title><link rel="icon" href="data:,"><style>{STYLE}</style></head><body>
 <h1>edgewalk: speed against accuracy</h1>
 <p>edgewalk is a fixed-point 3D rasterizer for microcontrollers that is told how much error a scene can bear and does no more work
-than that. This page shows what each way of drawing a texture costs on six processors, and how far from the truth it is.</p>
-<nav><a href="#cost">Cost</a> <a href="#accuracy">Accuracy</a> <a href="#auto">The automatic choice</a> <a href="#work">Cost against work</a> <a href="#memory">RAM against speed</a>
+than that. This page shows what each way of drawing a texture costs on six processors, how far from the truth it is, and what a picture costs in <a href="#memory">less and less RAM</a>.</p>
+<nav><a href="#cost">Cost</a> <a href="#accuracy">Accuracy</a> <a href="#auto">The automatic choice</a> <a href="#work">Cost against work</a>
 <a href="#size">Flash and stack</a> <a href="#stability">Where methods fail</a>
 {" ".join(f'<a href="#scene-{scene}">Scene {scene}</a>' for scene in scenes)} <a href="#how">How it was measured</a></nav>
 
@@ -339,11 +339,11 @@ what a run and a pixel cost: the generic one is the same everywhere, and each ta
 table sizes; <a href="auto.csv">auto.csv</a> names both for every case.</p>
 {auto_tables(auto, bits)}
 
-<h2 id="work">Cost against work</h2>
-{work_section(worked[0], worked[1], worked[4])}
-
 <h2 id="memory">RAM against speed</h2>
 {memory_section(*in_memory)}
+
+<h2 id="work">Cost against work</h2>
+{work_section(worked[0], worked[1], worked[4])}
 
 <h2 id="size">Flash and stack</h2>
 {size_section(worked[2], worked[3], worked[5])}
