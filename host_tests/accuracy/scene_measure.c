@@ -4,35 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../reference/affine.h"
+
 /* ---- baked numbers in double ---- */
-
-typedef struct matrix {
-    double m[3][4];
-} matrix;
-
-static matrix exact(const ew_mat34 *fixed)
-{
-    matrix r;
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 4; j++) {
-            const ew_row *row = &fixed->row[i];
-            r.m[i][j] = ldexp(row->m[j], (j < 3 ? row->e : row->e_last) - 30);
-        }
-    }
-    return r;
-}
-
-static matrix times(const matrix *a, const matrix *b)
-{
-    matrix r;
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 4; j++) {
-            r.m[i][j] = j == 3 ? a->m[i][3] : 0;
-            for (int k = 0; k < 3; k++) r.m[i][j] += a->m[i][k] * b->m[k][j];
-        }
-    }
-    return r;
-}
 
 static double number(const uint8_t *p, int bytes)
 {
@@ -67,7 +41,7 @@ static void rotation_between(double turn[4], const uint8_t *a, const uint8_t *b,
 }
 
 /* docs/scene-format.md, "movement". */
-static matrix track_matrix(const ew_scene *scene, int track, uint32_t time_ms)
+static ref_affine track_matrix(const ew_scene *scene, int track, uint32_t time_ms)
 {
     const uint8_t *t = scene->section[EW_SECTION_TRAK].records + 12 * track;
     double at = time_ms / (double)(uint16_t)number(t + 6, 2), last = (uint16_t)number(t + 4, 2) - 1.0;
@@ -86,7 +60,7 @@ static matrix track_matrix(const ew_scene *scene, int track, uint32_t time_ms)
     double r[3][3] = { { 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y) },
                        { 2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x) },
                        { 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y) } };
-    matrix m;
+    ref_affine m;
     for (int i = 0; i < 3; i++) {
         m.m[i][3] = ldexp(v[i], (int)number(t + 8, 2) - 30);
         for (int j = 0; j < 3; j++) m.m[i][j] = r[i][j] * ldexp(v[3 + j], (int)number(t + 10, 2) - 30);
@@ -94,20 +68,20 @@ static matrix track_matrix(const ew_scene *scene, int track, uint32_t time_ms)
     return m;
 }
 
-static void pose(const ew_scene *scene, uint32_t time_ms, matrix *world)
+static void pose(const ew_scene *scene, uint32_t time_ms, ref_affine *world)
 {
     for (uint32_t i = 0; i < scene->section[EW_SECTION_NODE].count; i++) {
         ew_scene_node node;
         ew_scene_get_node(scene, i, &node);
-        matrix local = node.track >= 0 ? track_matrix(scene, node.track, time_ms) : exact(&node.local);
-        world[i] = node.parent >= 0 ? times(&world[node.parent], &local) : local;
+        ref_affine local = node.track >= 0 ? track_matrix(scene, node.track, time_ms) : ref_affine_of(&node.local);
+        world[i] = node.parent >= 0 ? ref_affine_times(&world[node.parent], &local) : local;
     }
 }
 
 /* ---- one picture ---- */
 
 static int measure_primitive(const ew_scene *scene, uint32_t number_of, const ew_projection *projection,
-                             const ew_mat34 *node_view, const matrix *node_view_exact, const ew_viewport *viewport,
+                             const ew_mat34 *node_view, const ref_affine *node_view_exact, const ew_viewport *viewport,
                              ew_geometry *geometry, ew_screen_vertex *scratch, int tolerance, ew_rung rung)
 {
     ew_scene_primitive p;
@@ -123,7 +97,7 @@ static int measure_primitive(const ew_scene *scene, uint32_t number_of, const ew
     if (!error) error = ew_transform_set(&geometry->transform, projection, &model_view, viewport);
     if (error) return error;
     ew_transform_vertices(&geometry->transform, p.vertices, p.vertex_count, scratch);
-    matrix box = exact(&p.dequantise), mv = times(node_view_exact, &box);
+    ref_affine box = ref_affine_of(&p.dequantise), mv = ref_affine_times(node_view_exact, &box);
     const ew_mesh mesh = { p.vertices, scratch, NULL, p.indices, p.index_count, p.uv_fraction_bits };
     return measure_mesh(geometry, mv.m, &mesh);
 }
@@ -133,7 +107,7 @@ int measure_scene(const ew_scene *scene, const ew_scene_camera *camera, uint32_t
 {
     uint32_t nodes = scene->section[EW_SECTION_NODE].count;
     ew_mat34 *world = calloc(nodes, sizeof *world), node_view;
-    matrix *world_exact = calloc(nodes, sizeof *world_exact), view = exact(&camera->view);
+    ref_affine *world_exact = calloc(nodes, sizeof *world_exact), view = ref_affine_of(&camera->view);
     ew_screen_vertex *scratch = calloc(scene->largest_primitive, sizeof *scratch);
     ew_raster raster;
     ew_geometry geometry;
@@ -156,7 +130,7 @@ int measure_scene(const ew_scene *scene, const ew_scene_camera *camera, uint32_t
         for (uint32_t i = 0; i < nodes && !error; i++) {
             ew_scene_node node;
             ew_scene_get_node(scene, i, &node);
-            matrix exact_view = times(&view, &world_exact[i]);
+            ref_affine exact_view = ref_affine_times(&view, &world_exact[i]);
             error = ew_mat34_mul(&node_view, &camera->view, &world[i]);
             for (uint32_t k = 0; k < node.primitive_count && !error; k++) {
                 error = measure_primitive(scene, node.first_primitive + k, &projection, &node_view, &exact_view,

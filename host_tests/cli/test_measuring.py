@@ -17,6 +17,7 @@ import atlas  # noqa: E402
 import baseline  # noqa: E402
 import charts  # noqa: E402
 import count  # noqa: E402
+import memory  # noqa: E402
 import model  # noqa: E402
 import report  # noqa: E402
 import tables  # noqa: E402
@@ -178,6 +179,16 @@ class Work(unittest.TestCase):
         cases = [count.Case("A", method, "0", 1) for method in ("exact", "auto", "auto m3", "auto host")]
         self.assertEqual([case.method for case in count.cases_of("m4", cases)], ["exact", "auto", "auto m3"])
         self.assertEqual([case.method for case in count.cases_of("rv32imc", cases)], ["exact", "auto"])
+
+
+class Modes(unittest.TestCase):
+    def test_series_of_a_target(self):
+        rows = [dict(zip(count.MEMORY_COLUMNS, [target, scene, mode, 1, ram, "na", 0, 2000000, "1", cycles]))
+                for target, scene, mode, ram, cycles in (("m3", "A", "at-once", 4096, 3000000), ("m3", "A", "line", 1024, 5000000),
+                                                         ("host", "A", "line", 1024, "na"))]
+        self.assertEqual(memory.series(rows, "m3", "cycles_typical"), {"A": [(4096, 3.0, "at-once"), (1024, 5.0, "line")]})
+        self.assertEqual(memory.series(rows, "host", "cycles_typical"), {})
+        self.assertEqual(memory.ticks([3, 30]), [2, 5, 10, 20, 50])
 
 
 class Atlas(unittest.TestCase):

@@ -9,12 +9,10 @@
 #include "edgewalk/geometry.h"
 #include "edgewalk/picture.h"
 #include "edgewalk/scene.h"
+#include "drawn.h"
 #include "scene_data.h"
 
 enum { W = BENCH_WIDTH, H = BENCH_HEIGHT, BACKGROUND = 0 };
-
-/* What the port gives: the board in firmware, the end of this file on the host. */
-void bench_line(const char *text);
 
 static uint16_t colour[W * H], depth[W * H];
 static ew_screen_vertex screen[BENCH_MOST_VERTICES];
@@ -125,21 +123,6 @@ int32_t bench_draw(const bench_scene *s, const ew_material *material)
 }
 void bench_end(void) { __asm__ volatile(""); }
 
-#define START UINT32_C(2166136261) /* FNV-1a over 16-bit units */
-static uint32_t hash(uint32_t h, const uint16_t *c, const uint16_t *z, int pixels)
-{
-    for (int i = 0; i < pixels; i++) h = (((h ^ c[i]) * 16777619u) ^ z[i]) * 16777619u;
-    return h;
-}
-
-static void print_hash(uint32_t h)
-{
-    char text[10] = { 0 };
-    for (int i = 0; i < 8; i++) text[i] = "0123456789abcdef"[h >> (28 - 4 * i) & 15];
-    text[8] = '\n';
-    bench_line(text);
-}
-
 /* Returns 0, or 1 when the scene cannot be drawn. */
 static int run(const bench_scene *s, const ew_target *target, const ew_material *material, const ew_cost *cost)
 {
@@ -159,7 +142,7 @@ static int run(const bench_scene *s, const ew_target *target, const ew_material 
     if (!error) error = bench_draw(s, material) < 0;
     bench_end();
     if (error) bench_line("cannot draw a scene\n");
-    else print_hash(hash(START, colour, depth, W * H));
+    else drawn_print(drawn_hash(DRAWN_START, colour, depth, W * H));
     return error != 0;
 }
 
@@ -168,7 +151,7 @@ static void no_band(void *user, const ew_target *band) { (void)user, (void)band;
 static void hash_band(void *user, const ew_target *band)
 {
     (void)user;
-    band_hash = hash(band_hash, band->colour, band->depth, W * band->height);
+    band_hash = drawn_hash(band_hash, band->colour, band->depth, W * band->height);
 }
 
 static void print_decimal(uint32_t n)
@@ -212,7 +195,7 @@ static int run_mode(const bench_scene *s, const bench_mode *m)
     if (!error) error = draw_mode(s, &material);
     const uint32_t active = counts.most_active;
     mode_bytes = ew_picture_bytes(&picture, objects, object_count, active);
-    band_hash = START;
+    band_hash = DRAWN_START;
     if (!error) error = draw_mode(s, &material);
     picture.band = no_band;
     if (!error) error = bench_draw(s, &material);
@@ -220,7 +203,7 @@ static int run_mode(const bench_scene *s, const bench_mode *m)
     mode = NULL;
     counts.most_active = active;
     if (error) bench_line("cannot draw a scene in bands\n");
-    else print_hash(band_hash);
+    else drawn_print(band_hash);
     if (!error) print_memory();
     return error != 0;
 }
@@ -283,53 +266,33 @@ static int run_all(void)
 }
 
 #if __STDC_HOSTED__
-#include <stdio.h>
-#include <string.h>
-
-static int quiet;
-void bench_line(const char *text)
-{
-    if (!quiet) fputs(text, stdout);
-}
-
 #if EW_TRACE
-static long fragments;
-void ew_trace_triangle(const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *c, int rung)
-{
-    (void)a, (void)b, (void)c, (void)rung;
-}
-void ew_trace_fragment(uint16_t x, uint16_t y, uint16_t d, ew_q20_12 u, ew_q20_12 v)
-{
-    (void)x, (void)y, (void)d, (void)u, (void)v;
-    fragments++;
-}
-
 static int list(void)
 {
     const bench_method *method;
     uint16_t tolerance;
     static long of_scene[16];
-    quiet = 1;
+    drawn_quiet = 1;
     for (int s = 0; s < bench_scene_count && s < 16; s++) {
         for (int i = 0; bench_case(i, &method, &tolerance); i++) {
             if (i == 0) {
-                fragments = 0;
+                drawn_fragments = 0;
                 if (run_method(&bench_scenes[s], method->rung, tolerance, NULL)) return 1;
-                of_scene[s] = fragments;
+                of_scene[s] = drawn_fragments;
             }
-            printf("%s,%s,%g,%ld\n", bench_scenes[s].name, method->name, tolerance / 16.0, fragments);
+            printf("%s,%s,%g,%ld\n", bench_scenes[s].name, method->name, tolerance / 16.0, drawn_fragments);
         }
         for (int i = 0; i < BENCH_PROFILES * BENCH_TOLERANCES; i++) {
             printf("%s,%s,%g,%ld\n", bench_scenes[s].name, bench_profiles[i / BENCH_TOLERANCES].name,
-                   bench_tolerances[i % BENCH_TOLERANCES] / 16.0, fragments);
+                   bench_tolerances[i % BENCH_TOLERANCES] / 16.0, drawn_fragments);
         }
     }
     const bench_scene *of_fills;
     for (int s = 0; (of_fills = fill_scene(s)); s++) {
         for (int i = 0; i < BENCH_FILLS; i++) {
-            fragments = 0;
+            drawn_fragments = 0;
             if (run_fill(of_fills, &bench_fills[i])) return 1;
-            printf("%s,%s,%g,%ld\n", of_fills->name, bench_fills[i].name, BENCH_FILL_TOLERANCE / 16.0, fragments);
+            printf("%s,%s,%g,%ld\n", of_fills->name, bench_fills[i].name, BENCH_FILL_TOLERANCE / 16.0, drawn_fragments);
         }
     }
     for (int s = 0; s < bench_scene_count && s < 16; s++) {
@@ -350,8 +313,5 @@ int main(int argc, char **argv)
     return argc > 1 ? 2 : run_all();
 }
 #else
-#include "../../examples/firmware/board/board.h"
-
-void bench_line(const char *text) { board_print(text); }
 int main(void) { return run_all(); }
 #endif

@@ -2,7 +2,7 @@
 # a folder of images for each size of the reciprocal table, $(C)/4 to $(C)/9.
 C := $(B)/cycles
 CYCLES_CORE := $(filter fixed/% src/raster/% src/geometry/% src/scene/%,$(CORE_SRCS))
-CYCLES_DEPS := tools/cycles/bench.c $(CYCLES_CORE) tools/cycles/cases.h tools/cycles/scene_data.h \
+CYCLES_DEPS := tools/cycles/bench.c $(CYCLES_CORE) tools/cycles/cases.h tools/cycles/drawn.h tools/cycles/scene_data.h \
   $(wildcard include/edgewalk/*.h fixed/*.inc src/*/*.h)
 COUNT_TARGETS ?= host m0plus m3 m4 m33 rv32imc
 COUNT_BITS := 8

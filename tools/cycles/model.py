@@ -16,14 +16,17 @@ SOURCES = {
               "with a second, independent tool's only.",
     "m3": "Arm DDI 0337, Cortex-M3 Technical Reference Manual: table 18.1 (issue E) for data processing, MUL, branches, "
           "single and multiple loads and stores, and 'Load/store timings' (issue I); table 3-1 of its revision r2p1 for MLA 2, "
-          "long multiplies 3-5 and 4-7, divides 2-12: all compared. Unchecked, from memory: folded IT.",
+          "long multiplies 3-5 and 4-7, divides 2-12; that IT goes along with a neighbour, 0 or 1: Microchip's description of the "
+          "Cortex-M3's Auxiliary Control Register, bit DISFOLD. All compared.",
     "m4": "Arm 100166, Cortex-M4 Technical Reference Manual, table 3-1: data processing, MUL, MLA and the range of P "
-          "(pipeline refill, 1-3) compared; load/store timings compared with Texas Instruments SWCU185. Unchecked, "
-          "from memory: long multiplies 1, divides 2-12, folded IT.",
+          "(pipeline refill, 1-3); long multiplies 1 and divides 2-12: Texas Instruments SWCU192, table 3-25; loads and stores: "
+          "SWCU185; folded IT, 0 or 1: SLAU723A, register ACTLR. All compared.",
     "m33": "An estimate: Arm publishes no instruction timings for the Cortex-M33. Compared with measurements of an RP2350 that "
            "others published (jnk0le, 'pipeline cycle test', 2025): single loads and stores 1, a stall where a loaded register is "
            "used at once, N registers in N cycles, taken branches 1 or 2, branches not taken 0 or 1, IT 0 behind most "
-           "instructions. From the M4: divides 2-12, multiplies 1.",
+           "instructions. Multiplies and multiply-accumulates 1: Nordic, nRF5340 Product Specification, CPU. Unchecked: that a long "
+           "multiply may take 2 (high), divides 2-12 as on the M4, pairs of 16-bit instructions issued together, which "
+           "are not modelled.",
     "rv32imc": "lowRISC Ibex, 'Pipeline Details' (stall cycles of each kind of instruction), compared. Low: single-cycle "
                "multiplier and branch target adder; typical: fast multiplier, no such adder; high: slow multiplier.",
 }

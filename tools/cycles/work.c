@@ -5,6 +5,7 @@
  * On the host: `work --list`, built with EW_TRACE = 1, names the cases with their triangles and fragments. */
 #include "edgewalk/geometry.h"
 #include "edgewalk/scene.h"
+#include "drawn.h"
 #include "scene_data.h"
 
 enum { SIDE_MOST = 1024, GRID_MOST = 224, FRAMES = 24, W = 320, H = 240, TOLERANCE = 4 };
@@ -26,8 +27,6 @@ static const work_case cases[] = {
     { SWEEP_TEXELS, 8, 240, 256 },     { SWEEP_TEXELS, 8, 240, 1024 },
 };
 enum { CASES = sizeof cases / sizeof *cases };
-
-void bench_line(const char *text);
 
 static uint16_t colour[SIDE_MOST * SIDE_MOST], depth[SIDE_MOST * SIDE_MOST];
 static struct {
@@ -64,16 +63,6 @@ static int begin(uint16_t width, uint16_t height)
     if (!error) ew_raster_clear(&raster, 0);
     ew_geometry_init(&geometry, &raster);
     return error;
-}
-
-static void print_hash(uint32_t pixels)
-{
-    char text[10] = { 0 };
-    uint32_t h = 2166136261u;
-    for (uint32_t i = 0; i < pixels; i++) h = (((h ^ colour[i]) * 16777619u) ^ depth[i]) * 16777619u;
-    for (int i = 0; i < 8; i++) text[i] = "0123456789abcdef"[h >> (28 - 4 * i) & 15];
-    text[8] = '\n';
-    bench_line(text);
 }
 
 /* A sheet over [-1, 1) both ways, leaning back by half. */
@@ -152,32 +141,16 @@ static int run_all(void (*done)(const char *sweep, uint32_t x, uint32_t pixels, 
 static void print_case(const char *name, uint32_t x, uint32_t pixels, int32_t triangles)
 {
     (void)name, (void)x, (void)triangles;
-    print_hash(pixels);
+    drawn_print(drawn_hash(DRAWN_START, colour, depth, pixels));
 }
 
 #if __STDC_HOSTED__
-#include <stdio.h>
-#include <string.h>
-
-void bench_line(const char *text) { fputs(text, stdout); }
-
 #if EW_TRACE
-static long fragments;
-void ew_trace_triangle(const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *c, int rung)
-{
-    (void)a, (void)b, (void)c, (void)rung;
-}
-void ew_trace_fragment(uint16_t x, uint16_t y, uint16_t d, ew_q20_12 u, ew_q20_12 v)
-{
-    (void)x, (void)y, (void)d, (void)u, (void)v;
-    fragments++;
-}
-
 static void list_case(const char *name, uint32_t x, uint32_t pixels, int32_t triangles)
 {
     (void)pixels;
-    printf("%s,%u,%d,%ld\n", name, (unsigned)x, (int)triangles, fragments);
-    fragments = 0;
+    printf("%s,%u,%d,%ld\n", name, (unsigned)x, (int)triangles, drawn_fragments);
+    drawn_fragments = 0;
 }
 #endif
 
@@ -190,8 +163,5 @@ int main(int argc, char **argv)
     return argc > 1 ? 2 : run_all(print_case);
 }
 #else
-#include "../../examples/firmware/board/board.h"
-
-void bench_line(const char *text) { board_print(text); }
 int main(void) { return run_all(print_case); }
 #endif

@@ -87,21 +87,24 @@ def limits(rows):
 
 # Axes on which wrong_px tells more than err_px
 COUNTED = {"t_junction_edge_px": "cracks at 4,000 junctions (0.1: none)", "coplanar_units_per_px": "pixels of the second (0.1: none)",
-           "crossing_units_per_px": "wrong pixels (0.1: none)", "picture_side_px": "rows that differ between bands and the whole (0.1: none)"}
+           "crossing_units_per_px": "wrong pixels (0.1: none)",
+           "picture_side_px": "rows that differ (0.1: none)"}
+# ... and on which err_px is something else than a displacement
+ERRORS = {"depth16": "pixels lost (0.1: none)", "grazing": "mip levels off", "line_": "set-ups beyond the first, per triangle",
+          "link": "part of the frames that is not shown"}
 
 
 def label(axis):
-    if axis.startswith("depth16"):
-        return "pixels lost (0.1: none)"
-    if axis.startswith("grazing"):
-        return "mip levels off"
-    return COUNTED.get(axis, "worst displacement, px (below 1/4096 at it)")
+    for start, text in ERRORS.items():
+        if axis.startswith(start):
+            return text
+    return COUNTED.get(axis, "displacement, px (1/4096: none)")
 
 
 def draw(folder, rows):
     """Charts of err_px (wrong pixels for separations of depth) against x; their names."""
     os.makedirs(folder, exist_ok=True)
-    script, names, axes = ["set grid lc rgb '#e4e4e4'", "set key below samplen 1.5 font ',10'", "set bmargin 6.5", "set logscale xy",
+    script, names, axes = ["set grid lt 1 lc rgb '#e4e4e4'", "set key below maxcols 4 samplen 1.5 font ',11'", "set bmargin 7.5", "set logscale xy",
                            "set format '%g'", "set border 3", "set tics nomirror"], [], {}
     for (axis, method), own in groups(rows).items():
         axes.setdefault(axis, {})[method] = own
@@ -110,20 +113,21 @@ def draw(folder, rows):
         plots, predicted = [], []
         for i, (method, own) in enumerate(methods.items()):
             script.append(f"$d{len(names)}_{i} << EOD")
-            for row in own:
+            for before, row in zip([own[0], *own], own):
+                if row["state"] != before["state"] and "refused" in (row["state"], before["state"]):
+                    script.append("")  # no line from what was drawn to what was refused
                 y = max(float(row["wrong_px"]), 0.1) if depth else max(float(row["err_px"]), 1 / 4096)
-                if float(row["x"]) > 0:
-                    script.append(f"{row['x']} {y:.6g} {({'ok': 7, 'degraded': 6, 'refused': 2})[row['state']]}")
+                script.append(f"{row['x']} {y:.6g} {({'ok': 7, 'degraded': 6, 'refused': 2})[row['state']]}")
             script.append("EOD")
             plots.append(f"$d{len(names)}_{i} using 1:2 with lines lc rgb '{COLOURS[i % len(COLOURS)]}' title '{method}', "
                          f"$d{len(names)}_{i} using 1:2:3 with points pt variable ps 0.7 lc rgb '{COLOURS[i % len(COLOURS)]}' notitle")
             if own[0]["predicted_limit"] != "na":
                 predicted.append((float(own[0]["predicted_limit"]), COLOURS[i % len(COLOURS)]))
         name = f"stability-{axis}"
-        script.append("unset arrow")
+        positive = all(float(row["x"]) > 0 for own in methods.values() for row in own)
+        script += ["unset arrow", "set logscale xy" if positive else "unset logscale x"]
         script += [f"set arrow from {x:.6g}, graph 0 to {x:.6g}, graph 1 nohead dt 2 lc rgb '{colour}'" for x, colour in predicted]
-        script += [f"set title '{axis.replace('_', ' ')}'", "set xlabel 'x'",
-                   f"set ylabel '{label(axis)}'"]
+        script += [f"set xlabel '{axis.replace('_', ' ')}'", f"set ylabel '{label(axis)}'"]
         for terminal, suffix in (("svg size 480,400 dynamic noenhanced font 'sans,12' background '#ffffff'", "svg"),
                                  ("pngcairo size 480,400 noenhanced font 'DejaVu Sans,10'", "png")):
             script += [f"set terminal {terminal}", f"set output '{name}.{suffix}'", "plot " + ", ".join(plots)]

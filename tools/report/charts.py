@@ -13,7 +13,7 @@ ERRORS = {"worst": ("disp_max_px", "worst displacement, px"), "rms": ("disp_rms_
 FLOOR = {"worst": 1 / 512, "rms": 1 / 8192, "texels": 1 / 8192}  # what is below stands here: a logarithmic axis has no 0
 COLOURS = ["#1b6ca8", "#7b3fa0", "#2a9d4a", "#d98a00", "#0a9396", "#8d6e63", "#5c6bc0", "#9e9d24"]
 AUTO_COLOUR, FRONTIER_COLOUR, REFERENCE_COLOUR, PEER_COLOUR = "#c8102e", "#b0b0b0", "#555555", "#d81b9a"
-WIDTH, HEIGHT = 480, 420
+WIDTH, HEIGHT = 480, 450
 
 
 def texels(row):
@@ -110,8 +110,8 @@ def panel(script, name, title, rows, marks, speed, error, bits):
     return True
 
 
-HEAD = ["set logscale xy", "set grid lc rgb '#e4e4e4'", "set format x '%g'", "set format y '%g'",
-        "set key below samplen 1.5 font ',10'", "set bmargin 8", "set border 3", "set tics nomirror"]
+HEAD = ["set logscale xy", "set grid lt 1 lc rgb '#e4e4e4'", "set format x '%g'", "set format y '%g'",
+        "set key below maxcols 4 samplen 1.5 font ',11'", "set bmargin 9.5", "set border 3", "set tics nomirror"]
 
 
 def draw(folder, rows, reference_file, bits, report_progress):

@@ -15,8 +15,8 @@ report:  ## speed against accuracy: tables, charts and a page in build/report (R
 .PHONY: report report-run
 
 # The walks run under the sanitizers: no axis may end in a write outside or undefined behaviour.
-STABILITY_SRCS := $(addprefix tools/report/,stability.c walk.c more_axes.c rotations.c maps.c) host_tests/reference/exact.c $(filter-out tools/% host_tests/accuracy/scene_measure.c host_tests/accuracy/standard_measure.c,$(JUDGE_SRCS)) \
-  $(filter-out src/scene/% src/display/%,$(CORE_SRCS))
+STABILITY_SRCS := $(addprefix tools/report/,stability.c walk.c more_axes.c memory_axes.c link_axes.c rotations.c maps.c) host_tests/reference/exact.c $(filter-out tools/% host_tests/accuracy/scene_measure.c host_tests/accuracy/standard_measure.c,$(JUDGE_SRCS)) \
+  $(filter-out src/scene/%,$(CORE_SRCS))
 $(C)/%/stability: $(STABILITY_SRCS) tools/cycles/cases.h $(wildcard tools/report/*.h include/edgewalk/*.h host_tests/*/*.h fixed/*.inc src/*/*.h)
 	@mkdir -p $(@D); echo "CC $@"
 	@$(CC) $(HOST_CFLAGS) -g -fsanitize=address,undefined -fno-sanitize-recover=all -include assert.h '-DEW_ASSERT=assert' \

@@ -245,34 +245,9 @@ static void huge_floors(void)
 {
     for (int k = 2; k <= 40; k++) {
         static const ew_vertex16 v[4] = { { -32000, 0, 32000, 0, 0 }, { 32000, 0, 32000, 3200, 0 }, { 32000, 0, -32000, 3200, 3200 }, { -32000, 0, -32000, 0, 3200 } };
-        static const uint16_t indices[6] = { 0, 1, 2, 0, 2, 3 };
-        const double size = ldexp(1, k) / 32000 * 32768;
-        const ew_projection projection = { 65536, 98304, { 1 << 29, 1 } };
-        const ew_viewport viewport = { 0, 0, 320, 48 };
-        const ref_camera eye = { 1, 1.5, 1, 0, 0, 320, 48 };
-        const double exact[3][4] = { { size, 0, 0, 0 }, { 0, size, 0, -1.5 }, { 0, 0, size, 0 } };
-        ew_mat34 model_view;
-        ew_geometry geometry;
-        ew_screen_vertex screen[4];
         canvas c;
         walk_begin(&c, &plain, 320, 48, 256, 256);
-        measures discarded;
-        measure_end(&discarded, 0.125);
-        measure_begin(&c.target, &eye, 0);
-        memset(&model_view, 0, sizeof model_view);
-        for (int i = 0; i < 3; i++) {
-            int e;
-            model_view.row[i].m[i] = (int32_t)lrint(ldexp(frexp(size, &e), 30));
-            model_view.row[i].e = (int16_t)e;
-        }
-        model_view.row[1].m[3] = -(3 << 28), model_view.row[1].e_last = 1;
-        ew_geometry_init(&geometry, &c.raster);
-        if (!c.error) c.error = ew_transform_set(&geometry.transform, &projection, &model_view, &viewport);
-        if (!c.error) {
-            ew_transform_vertices(&geometry.transform, v, 4, screen);
-            const ew_mesh mesh = { v, screen, NULL, indices, 6, 4 };
-            c.error = measure_mesh(&geometry, exact, &mesh);
-        }
+        walk_floor(&c, v, ldexp(1, k) / 32000 * 32768, -1.5);
         measures m = walk_end(&c);
         walk_report("floor_half_size_over_near", &plain, ldexp(1, k), &c, &m, 0, walk_no_limit);
     }

@@ -4,6 +4,7 @@ import os
 
 import atlas
 import charts
+import memory
 import model
 import tables
 
@@ -21,7 +22,7 @@ SCENES = {
 }
 TARGETS = {
     "host": "the host's own processor", "m0plus": "Cortex-M0+", "m3": "Cortex-M3", "m4": "Cortex-M4, no floating point used",
-    "m33": "Cortex-M33, no floating point used", "rv32imc": "RV32IMC",
+    "m33": "Cortex-M33, no floating point used, its cycles an estimate", "rv32imc": "RV32IMC",
 }
 STYLE = """
 :root { --ink: #1c2430; --soft: #5b6775; --line: #d9dee5; --accent: #c8102e; }
@@ -30,14 +31,14 @@ body { margin: 0 auto; max-width: 1400px; padding: 0 16px 64px; color: var(--ink
        font: 16px/1.55 system-ui, "Segoe UI", "DejaVu Sans", sans-serif; }
 h1 { font-size: 1.9rem; line-height: 1.2; margin: 32px 0 8px; } h2 { margin: 48px 0 8px; } h3 { margin: 28px 0 4px; }
 p, li { max-width: 75ch; } .soft, figcaption { color: var(--soft); font-size: 0.9rem; } code { font-size: 0.9em; }
-nav a { margin-right: 14px; white-space: nowrap; }
+nav { margin-bottom: 16px; } nav a { margin-right: 14px; white-space: nowrap; }
 .grid { display: grid; gap: 12px; grid-template-columns: repeat(auto-fill, minmax(min(100%, 400px), 1fr)); }
 .pictures { grid-template-columns: repeat(auto-fill, minmax(min(100%, 240px), 1fr)); }
 figure { margin: 0; } img { width: 100%; height: auto; display: block; border: 1px solid var(--line); background: #fff; }
 .pictures img { image-rendering: pixelated; }
-.table { overflow-x: auto; margin: 8px 0 16px; } table { border-collapse: collapse; font-size: 0.9rem; }
+.table { overflow-x: auto; margin: 8px 0 16px; } table { border-collapse: separate; border-spacing: 0; font-size: 0.9rem; }
 th, td { padding: 3px 10px; border-bottom: 1px solid var(--line); text-align: right; white-space: nowrap; }
-th:first-child, td:first-child { text-align: left; } thead th { border-bottom: 2px solid var(--ink); }
+th:first-child, td:first-child { text-align: left; position: sticky; left: 0; background: #fff; } thead th { border-bottom: 2px solid var(--ink); }
 .over { color: var(--accent); font-weight: 600; } details { margin: 8px 0; } summary { cursor: pointer; color: #1b5e9c; }
 .scale { height: 14px; max-width: 480px; border: 1px solid var(--line);
          background: linear-gradient(90deg, #0d0d4d, #0073b3 25%, #33bf4d 50%, #ffd91a 75%, #d91a1a); }
@@ -62,6 +63,17 @@ def first_auto(rows):
     """The rows of the automatic choice, of its first profile."""
     names = [row["method"] for row in rows if tables.is_auto(row)]
     return [row for row in rows if names and row["method"] == names[0]]
+
+
+def first_sight(scenes, names):
+    """A picture and what it costs, before any table."""
+    scene = scenes[-1]
+    shown = [(target, name) for target, name in names.get((scene, "instr", "worst"), []) if target in ("m0plus", "m3")]
+    figures = "".join(f"<figure>{image(f'charts/{name}.svg', f'scene {scene}, {target}', lazy=False)}<figcaption>{TARGETS[target]}</figcaption></figure>" for target, name in shown)
+    return f"""<div class="grid"><figure>{image(f'pictures/{scene}-ours.png', f'scene {scene}', lazy=False)}<figcaption>The sample scene as the library draws
+it, told that a texel may be 1/4 pixel off.</figcaption></figure>{figures}</div>
+<p class="soft">Each mark is a way to draw the scene: further down is faster, further left is more exact. The thick red line is the automatic
+choice, told 0 to 2 pixels.</p>"""
 
 
 def summary(rows, bits):
@@ -100,7 +112,7 @@ def auto_tables(auto, bits):
               short(row["measured_per_px"], 4), percent(row["over_measured"])] for row in over]
     head = ["target, scene, tolerance, counted by", "auto", "cheapest by its bound", "costs", "auto dearer by", "cheapest that measures so",
             "costs", "auto dearer by"]
-    return text + f"<details><summary>The {len(over)} dearer ones at {bits} bits</summary>{table(head, lines)}</details>"
+    return text + f"<details><summary>Dearer at {bits} bits: {len(over)}</summary>{table(head, lines)}</details>"
 
 
 def percent(text):
@@ -114,7 +126,7 @@ def image(name, alt, lazy=True):
 def panels(scene, names, speed, error):
     figures = "".join(
         f"<figure><a href='charts/{name}.svg'>{image(f'charts/{name}.svg', f'{speed} against {error}, scene {scene}, {target}')}</a>"
-        f"<figcaption><a href='charts/{name}.png'>PNG</a></figcaption></figure>" for target, name in names.get((scene, speed, error), []))
+        f"<figcaption>{TARGETS.get(target, target)} <a href='charts/{name}.png'>PNG</a></figcaption></figure>" for target, name in names.get((scene, speed, error), []))
     return f'<div class="grid">{figures}</div>'
 
 
@@ -134,7 +146,7 @@ def scene_section(scene, names, differing):
 
 AXES = {
     "depth_ratio_less_1": "farthest over nearest z along 240 pixels, less 1",
-    "far_horizon_near_over_z": "near/z of a wall: how far away it is",
+    "far_horizon_near_over_z": "near/z of a wall whose far end is twice as far; beyond the line it has one depth value, its texture is still right",
     "sliver_height_px": "height of slivers across the screen", "tiny_triangle_side_px": "side of the cells of a net of triangles",
     "span_px": "length of a span along which 1/z falls to 60 %", "uv_range_texels": "texels from corner to corner",
     "guard_half_width_px": "half the width of a triangle that stands over the screen",
@@ -150,8 +162,20 @@ AXES = {
     "slerp_angle_rad": "angle between two rotation keys", "slerp_short_of_half_turn_rad": "what that angle lacks to half a turn",
     "slerp_key_length": "length of a key that is not normalised", "chain_length": "matrices in a chain",
     "chain_of_10_to_4_length": "matrices in a chain that each scale by 10,000",
+    "sliver_width_px": "the same from top to bottom",
+    "line_active_triangles": "triangles active on every row, drawn line by line with room for fewer: the same picture, slower",
+    "line_memory_bytes": "bytes for 200 active triangles, line by line: set up once down to the first line, drawn down to the second",
+    "link_reports_lost": "part of the display's reports that are lost; 27 to a key frame; what is shown is never torn",
     "near_plane_z_over_near": "z of a floor's near corners over the near distance: at the eye and behind it too",
 }
+
+
+def axis_text(axis):
+    for start, text in (("uv_range_at_", "texels from corner to corner, with a reciprocal table of so many bits"),
+                        ("depth16_", "depth units between two walls that far away: pixels of the nearer one that are lost")):
+        if axis.startswith(start):
+            return text
+    return AXES[axis]
 
 
 def charts_of(names):
@@ -175,6 +199,24 @@ loop, so the lines over texels end there; the chart shows the step. <a href="wor
 display's rate hangs on the worst frame, not on the mean. <a href="frames.csv">frames.csv</a></p>
 {table(["target, scene", "frames", "mean instructions", "worst", "frame", "mean cycles", "worst", "worst / mean"], worst)}
 <div class="grid">{charts_of(names)}</div>"""
+
+
+def memory_section(rows, names):
+    shown = [row for row in memory.named(rows) if row["target"] == (MEMORY_TARGET if any(r[0] == MEMORY_TARGET for r in rows) else rows[0][0])]
+    lines = [[f"{row['scene']}, {row['mode']}", f"{row['ram_bytes']:,}", "-" if row["goal_bytes"] == "na" else f"{row['goal_bytes']:,}",
+              f"{row['instructions']:,}", f"{row['of_at_once']}", str(row["active"]), str(row["set_up_again"])] for row in shown]
+    more = "".join(f"<details><summary>{text} against RAM</summary><div class='grid'>{charts_of(of_speed)}</div></details>"
+                   for text, of_speed in list(zip(memory.SPEEDS.values(), names.values()))[:1] if names["cycles_typical"])
+    return f"""<p>One picture of 320 x 240 pixels, drawn at once, in bands of 32, 16, 8 and 4 rows, and line by line: the same bit for bit.
+RAM is what it takes beside the scene and its objects, colour and depth buffers included; with less of it, triangles that reach over
+several bands are kept or set up again. Automatic choice at 1/4 pixel; the clear is counted. Each line is a scene, its right end the
+picture at once, its left end line by line. <a href="memory.csv">memory.csv</a></p>
+<div class="grid">{charts_of(names["cycles_typical"] or names["instructions"])}</div>{more}
+<details><summary>The figures of {shown[0]["target"]}</summary>{table(["scene, mode", "RAM, bytes", "goal", "instructions", "of at once",
+ "active at most", "set up again"], lines)}</details>"""
+
+
+MEMORY_TARGET = "m3"
 
 
 def size_section(sizes, stacks, names):
@@ -213,7 +255,7 @@ def stability(out):
               verdict if verdict != "DISAGREES" else "<td class='over'>disagrees</td>"]
              for axis, method, predicted, measured, verdict in atlas.limits(rows) if verdict]
     figures = "".join(f"<figure><a href='charts/stability-{axis}.svg'>{image(f'charts/stability-{axis}.svg', axis)}</a><figcaption>"
-                      f"{AXES.get(axis, '')} <a href='charts/stability-{axis}.png'>PNG</a></figcaption></figure>"
+                      f"{axis_text(axis)} <a href='charts/stability-{axis}.png'>PNG</a></figcaption></figure>"
                       for axis in dict.fromkeys(row["axis"] for row in rows))
     states = [row["state"] for row in rows]
     return f"""<p>Each axis is walked from safe to broken, under the address and undefined behaviour sanitizers and with a margin around
@@ -262,24 +304,27 @@ def check_images(out, text):
             raise tables.Failed(f"{path}: the page shows it, and it is not there")
 
 
-def write(out, rows, auto, names, differing, bits, worked, versions):
+def write(out, rows, auto, names, differing, bits, worked, in_memory, versions):
     scenes = list(dict.fromkeys(row["scene"] for row in rows))
     text = f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
 <title>edgewalk: speed against accuracy</title><link rel="icon" href="data:,"><style>{STYLE}</style></head><body>
 <h1>edgewalk: speed against accuracy</h1>
 <p>edgewalk is a fixed-point 3D rasterizer for microcontrollers that is told how much error a scene can bear and does no more work
-than that. This page shows what each way of drawing a texture costs on six processors, and how far from the truth it is.</p>
+than that. This page shows what each way of drawing a texture costs on six processors, how far from the truth it is, and what a picture costs in <a href="#memory">less and less RAM</a>.</p>
 <nav><a href="#cost">Cost</a> <a href="#accuracy">Accuracy</a> <a href="#auto">The automatic choice</a> <a href="#work">Cost against work</a>
 <a href="#size">Flash and stack</a> <a href="#stability">Where methods fail</a>
 {" ".join(f'<a href="#scene-{scene}">Scene {scene}</a>' for scene in scenes)} <a href="#how">How it was measured</a></nav>
+
+{first_sight(scenes, names)}
 
 <h2 id="cost">What a picture costs</h2>
 <p>Executed instructions per fragment, and in brackets modelled cycles, of the automatic choice with a tolerance of 1/4 pixel and a
 reciprocal table of {bits} bits (the default). 320 x 240 pixels, RGB565, 16-bit depth, nearest texel.</p>
 {summary(rows, bits)}
 <p class="soft">{"; ".join(f"{name}: {text}" for name, text in TARGETS.items())}. All rows:
-<a href="speed_accuracy.csv">speed_accuracy.csv</a>, <a href="cycles.csv">cycles.csv</a>.</p>
+<a href="speed_accuracy.csv">speed_accuracy.csv</a>, <a href="cycles.csv">cycles.csv</a>, with low and high cycles too.</p>
+<p class="soft">Scenes: {" ".join(f'<a href="#scene-{scene}">{scene}</a>: {SCENES.get(scene, "a sample scene.")}' for scene in scenes)}</p>
 
 <h2 id="accuracy">How far from the truth</h2>
 <p>Against the referee, the same on every target. Methods: one linear map over the whole triangle (affine) or over runs of 8, 16 or 32
@@ -293,6 +338,9 @@ whole scene, and no more than 10 % above the cheapest that only turned out to ke
 what a run and a pixel cost: the generic one is the same everywhere, and each target has one of its own beside it. Counted over all scenes, tolerances and
 table sizes; <a href="auto.csv">auto.csv</a> names both for every case.</p>
 {auto_tables(auto, bits)}
+
+<h2 id="memory">RAM against speed</h2>
+{memory_section(*in_memory)}
 
 <h2 id="work">Cost against work</h2>
 {work_section(worked[0], worked[1], worked[4])}

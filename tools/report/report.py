@@ -17,6 +17,7 @@ import atlas
 import baseline
 import charts
 import count
+import memory
 import page
 import tables
 import work
@@ -47,7 +48,7 @@ def judge(build, bits, scenes):
 
 def measure(args, progress):
     """Rows of speed_accuracy for every size of the table, {size: what was judged}, rows of memory for the first, rows of work."""
-    cases, rows, judged, memory = count.list_cases(args.build), [], {}, []
+    cases, rows, judged, modes = count.list_cases(args.build), [], {}, []
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         names, jobs = {}, {}
         for bits in args.bits:
@@ -68,9 +69,9 @@ def measure(args, progress):
             counts = {target: jobs[bits, target].result() for target in args.targets}
             judged[bits] = jobs[bits, "judged"].result()
             rows += tables.speed_accuracy(bits, judged[bits], cases, counts)
-            memory = memory or count.memory_rows(cases, counts)
+            modes = modes or count.memory_rows(cases, counts)
     worked = work.rows_of(args.build, {target: jobs["work", target].result() for target in work.targets_of(args.targets)})
-    return rows, judged, memory, worked
+    return rows, judged, modes, worked
 
 
 def draw_pictures(args, bits):
@@ -91,11 +92,11 @@ def main():
     args = parser.parse_args()
     default = count.DEFAULT_BITS if count.DEFAULT_BITS in args.bits else args.bits[-1]
     progress = Progress(len(args.bits) * (len(args.targets) + 1) + len(work.targets_of(args.targets)) + 2)
-    rows, judged, memory, worked = measure(args, progress)
+    rows, judged, modes, worked = measure(args, progress)
     auto = list(tables.auto_rows(rows))
     tables.write(os.path.join(args.out, "speed_accuracy.csv"), tables.COLUMNS, rows)
     tables.write(os.path.join(args.out, "cycles.csv"), tables.CYCLE_COLUMNS, tables.cycle_rows(rows))
-    count.write_memory(os.path.join(args.out, "memory.csv"), memory)
+    count.write_memory(os.path.join(args.out, "memory.csv"), modes)
     tables.write(os.path.join(args.out, "auto.csv"), tables.AUTO_COLUMNS, auto)
     fitted, frames, sizes = list(work.fits(worked)), list(work.frames(worked)), work.read_sizes(args.out)
     tables.write(os.path.join(args.out, "work.csv"), work.COLUMNS, worked)
@@ -104,9 +105,11 @@ def main():
     here = os.path.dirname(os.path.abspath(__file__))
     names = charts.draw(os.path.join(args.out, "charts"), rows, os.path.join(here, "references.csv"), default, progress.say)
     work_names = work.draw(os.path.join(args.out, "charts"), worked, *sizes)
+    memory_names = memory.draw(os.path.join(args.out, "charts"), modes)
     progress.step("pictures")
     differing = draw_pictures(args, default)
-    page.write(args.out, rows, auto, names, differing, default, (fitted, frames, *sizes, *work_names), {target: baseline.versions(target) for target in args.targets})
+    page.write(args.out, rows, auto, names, differing, default, (fitted, frames, *sizes, *work_names), (modes, memory_names),
+               {target: baseline.versions(target) for target in args.targets})
     progress.step("page")
     progress.end()
     say(args.out, rows, judged, auto)

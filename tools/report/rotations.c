@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "edgewalk/fixed.h"
+#include "../../host_tests/reference/affine.h"
 
 /* ---- rotations ---- */
 
@@ -70,31 +70,6 @@ double rotations_worst(double angle, int bits, double length, int trials)
 
 /* ---- chains ---- */
 
-typedef struct affine {
-    double m[3][4];
-} affine;
-
-static affine exact_of(const ew_mat34 *a)
-{
-    affine r;
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 4; j++) r.m[i][j] = ldexp(a->row[i].m[j], (j < 3 ? a->row[i].e : a->row[i].e_last) - 30);
-    }
-    return r;
-}
-
-static affine product(const affine *a, const affine *b)
-{
-    affine r;
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 4; j++) {
-            r.m[i][j] = j == 3 ? a->m[i][3] : 0;
-            for (int k = 0; k < 3; k++) r.m[i][j] += a->m[i][k] * b->m[k][j];
-        }
-    }
-    return r;
-}
-
 static int random_matrix(ew_mat34 *out, int kind, int number)
 {
     double q[4], size[3];
@@ -114,7 +89,7 @@ static int random_matrix(ew_mat34 *out, int kind, int number)
     return ew_mat34_from_trs(out, t, 0, &turn, s, (int16_t)e);
 }
 
-static double image(const affine *m, const double p[3], int row)
+static double image(const ref_affine *m, const double p[3], int row)
 {
     return m->m[row][0] * p[0] + m->m[row][1] * p[1] + m->m[row][2] * p[2] + m->m[row][3];
 }
@@ -126,15 +101,15 @@ int rotations_chain(int n, int kind, double *off)
     for (int trial = 0; trial < 20; trial++) {
         ew_mat34 chain, next;
         int error = random_matrix(&chain, kind, 0);
-        affine exact = exact_of(&chain);
+        ref_affine exact = ref_affine_of(&chain);
         for (int i = 1; i < n && !error; i++) {
             error = random_matrix(&next, kind, i);
-            const affine of_next = exact_of(&next);
-            exact = product(&exact, &of_next);
+            const ref_affine of_next = ref_affine_of(&next);
+            exact = ref_affine_times(&exact, &of_next);
             if (!error) error = ew_mat34_mul(&chain, &chain, &next);
         }
         if (error) return error;
-        const affine drawn = exact_of(&chain);
+        const ref_affine drawn = ref_affine_of(&chain);
         double most = 0, largest = 0;
         for (int corner = 0; corner < 8; corner++) {
             const double p[3] = { corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1 };

@@ -47,41 +47,59 @@ static void depth_ratio(const pen *p)
     }
 }
 
-/* near/z on the whole of a wall that rises by half of it: the number of bits that are left. */
+/* Pixels of the wall, if all of them have the same depth. */
+static long untold_depths(const canvas *c, int x0, int x1, int y0, int y1)
+{
+    const uint16_t *first = c->target.depth + (size_t)y0 * c->target.stride + (size_t)x0;
+    for (int y = y0; y < y1; y++) {
+        for (int x = x0; x < x1; x++) {
+            if (c->target.depth[(size_t)y * c->target.stride + (size_t)x] != *first) return 0;
+        }
+    }
+    return (long)(x1 - x0) * (y1 - y0);
+}
+
+/* near/z of a wall on the left, twice as far away on the right. Half of it in depth units tells both sides apart:
+ * down to 2^-15 that is one unit; below, the wall's pixels count as wrong. Displacement stays as promised. */
 static void far_horizon(const pen *p)
 {
-    for (int k = 0; k <= 30; k++) {
-        double w = ldexp(1, -k);
+    const double end = ldexp(1, -15), step = pow(2, 0.25);
+    for (double w = 1; w >= ldexp(1, -30); w /= w < 16.1 * end && w > end / 15.9 ? step : 2) {
         canvas c;
         walk_begin(&c, p, W, H, 256, 256);
         wall(&c, 40, 280, 4, 44, w, w / 2, 200);
+        const long untold = untold_depths(&c, 40, 280, 4, 44);
         measures m = walk_end(&c);
-        walk_report("far_horizon_near_over_z", p, w, &c, &m, 0, walk_allowed(p) == walk_snap ? ldexp(1, -16) : walk_no_limit);
+        walk_report("far_horizon_near_over_z", p, w, &c, &m, untold, walk_careless(p) ? walk_no_limit : end);
     }
 }
 
-/* Height in pixels of slivers from side to side, 100 at random places; the rest of the slant is chance. */
-static void slivers(const pen *p)
+/* Thickness in pixels of slivers from side to side, or from top to bottom, 100 at random places; the rest of the slant
+ * is chance. */
+static void slivers(const pen *p, int upright)
 {
     srand48(1);
-    for (double height = 8; height > 0.0005; height /= 2) {
+    for (double thick = 8; thick > 0.0005; thick /= 2) {
         canvas c;
-        walk_begin(&c, p, W, H, 256, 256);
+        walk_begin(&c, p, upright ? H : W, upright ? W : H, 256, 256);
         for (int i = 0; i < 100; i++) {
-            double y = 4 + drand48() * (H - 16), slant = (drand48() - 0.5) * 8, w = 0.05 + 0.9 * drand48();
-            const ew_raster_vertex a = walk_at(drand48(), y, w, 0, 0), b = walk_at(319 + drand48(), y + slant, 0.9 * w, 250, 0);
-            const ew_raster_vertex d = walk_at(160 * drand48(), y + height, w, 0, 100);
-            walk_triangle(&c, &a, &b, &d);
+            const double at = 4 + drand48() * (H - 16), slant = (drand48() - 0.5) * 8, w = 0.05 + 0.9 * drand48();
+            const double corner[3][2] = { { drand48(), at }, { 319 + drand48(), at + slant }, { 160 * drand48(), at + thick } };
+            ew_raster_vertex v[3];
+            for (int k = 0; k < 3; k++) {
+                v[k] = walk_at(corner[k][upright], corner[k][!upright], k == 1 ? 0.9 * w : w, k == 1 ? 250 : 0, k == 2 ? 100 : 0);
+            }
+            walk_triangle(&c, &v[0], &v[1], &v[2]);
         }
         measures m = walk_end(&c);
-        walk_report("sliver_height_px", p, height, &c, &m, 0, walk_no_limit);
+        walk_report(upright ? "sliver_width_px" : "sliver_height_px", p, thick, &c, &m, 0, walk_no_limit);
     }
 }
 
 /* Side in pixels of the cells of a net of triangles: each pixel of the union exactly once. */
 static void tiny_triangles(const pen *p)
 {
-    for (double side = 16; side >= 0.5; side /= 2) {
+    for (double side = 16; side >= 0.25; side /= 2) {
         const double x0 = 10.37, y0 = 8.61, across = 96;
         int cells = (int)(across / side);
         canvas c;
@@ -202,33 +220,10 @@ static void near_plane(const pen *p)
     for (size_t k = 0; k < sizeof thousandths / sizeof *thousandths; k++) {
         canvas c;
         walk_begin(&c, p, W, H, 256, 256);
-        measures discarded;
-        measure_end(&discarded, 0.125);
-        const ref_camera eye = { 1, 1.5, 1, 0, 0, W, H };
-        measure_begin(&c.target, &eye, 0);
         /* 1 unit of a vertex is 1/1000 near */
         const ew_vertex16 v[4] = { { -9000, -900, (int16_t)-thousandths[k], 0, 0 }, { 9000, -1100, (int16_t)-thousandths[k], 3200, 0 },
                                    { 9000, -1000, -32000, 3200, 3200 }, { -9000, -1000, -32000, 0, 3200 } };
-        static const uint16_t indices[6] = { 0, 1, 2, 0, 2, 3 };
-        const double exact[3][4] = { { 32.768, 0, 0, 0 }, { 0, 32.768, 0, 0 }, { 0, 0, 32.768, 0 } };
-        const ew_projection projection = { 65536, 98304, { 1 << 29, 1 } };
-        const ew_viewport viewport = { 0, 0, W, H };
-        ew_screen_vertex screen[4];
-        ew_mat34 model_view;
-        ew_geometry geometry;
-        for (int i = 0; i < 3; i++) {
-            ew_row *row = &model_view.row[i];
-            memset(row, 0, sizeof *row);
-            row->m[i] = (int32_t)lrint(ldexp(32.768, 30 - 6));
-            row->e = 6;
-        }
-        ew_geometry_init(&geometry, &c.raster);
-        if (!c.error) c.error = ew_transform_set(&geometry.transform, &projection, &model_view, &viewport);
-        if (!c.error) {
-            ew_transform_vertices(&geometry.transform, v, 4, screen);
-            const ew_mesh mesh = { v, screen, NULL, indices, 6, 4 };
-            c.error = measure_mesh(&geometry, exact, &mesh);
-        }
+        walk_floor(&c, v, 32.768, 0);
         measures m = walk_end(&c);
         walk_report("near_plane_z_over_near", p, thousandths[k] / 1000.0, &c, &m, 0, walk_no_limit);
     }
@@ -238,7 +233,8 @@ static void all_axes(const pen *p)
 {
     depth_ratio(p);
     far_horizon(p);
-    slivers(p);
+    slivers(p, 0);
+    slivers(p, 1);
     tiny_triangles(p);
     long_spans(p);
     uv_range(p);
@@ -262,6 +258,8 @@ int main(int argc, char **argv)
     }
     if (!only_recip) {
         printf("axis,method,x,err_px,err_lsb,wrong_px,predicted_limit,state\n");
+        memory_axes();
+        link_axes();
         more_axes();
     }
     for (int i = 0; i < BENCH_METHODS; i++) {

@@ -9,6 +9,18 @@ enum { MARGIN = 64, SIDE = EW_TEXTURE_MAX };
 
 static uint16_t texels[SIDE * SIDE];
 
+static void fill_texels(void)
+{
+    for (uint32_t i = 0; !texels[SIDE * SIDE - 1] && i < SIDE * SIDE; i++) texels[i] = (uint16_t)(i * 40503u >> 3);
+}
+
+const ew_texture *walk_texture(void)
+{
+    static const ew_texture texture = { .texels = texels, .width = 256, .height = 256 };
+    fill_texels();
+    return &texture;
+}
+
 void walk_begin(canvas *c, const pen *p, int width, int height, int texture_width, int texture_height)
 {
     size_t stride = (size_t)width + MARGIN, size = stride * (size_t)(height + 2);
@@ -21,7 +33,7 @@ void walk_begin(canvas *c, const pen *p, int width, int height, int texture_widt
     }
     c->target = (ew_target){ .colour = c->memory[0] + stride, .depth = c->memory[1] + stride, .width = (uint16_t)width,
                              .height = (uint16_t)height, .stride = (uint16_t)stride };
-    for (uint32_t i = 0; !texels[SIDE * SIDE - 1] && i < SIDE * SIDE; i++) texels[i] = (uint16_t)(i * 40503u >> 3);
+    fill_texels();
     const ew_texture texture = { .texels = texels, .width = (uint16_t)texture_width, .height = (uint16_t)texture_height };
     const ew_material material = { .texture = &texture, .tolerance = p->tolerance, .rung = p->method->rung,
                                    .flags = EW_DOUBLE_SIDED };
@@ -42,6 +54,37 @@ void walk_quad(canvas *c, const ew_raster_vertex v[4])
 {
     walk_triangle(c, &v[0], &v[1], &v[2]);
     walk_triangle(c, &v[0], &v[2], &v[3]);
+}
+
+int walk_view(ew_transform *t, int width, int height, double size, double up)
+{
+    const ew_projection projection = { 65536, 98304, { 1 << 29, 1 } };
+    const ew_viewport viewport = { 0, 0, (uint16_t)width, (uint16_t)height };
+    ew_mat34 model_view;
+    int e;
+    memset(&model_view, 0, sizeof model_view);
+    const int32_t mantissa = (int32_t)lrint(ldexp(frexp(size, &e), 30));
+    for (int i = 0; i < 3; i++) model_view.row[i].m[i] = mantissa, model_view.row[i].e = (int16_t)e;
+    model_view.row[1].m[3] = (int32_t)lrint(ldexp(frexp(up, &e), 30)), model_view.row[1].e_last = (int16_t)e;
+    return ew_transform_set(t, &projection, &model_view, &viewport);
+}
+
+void walk_floor(canvas *c, const ew_vertex16 v[4], double size, double up)
+{
+    static const uint16_t indices[6] = { 0, 1, 2, 0, 2, 3 };
+    const double exact[3][4] = { { size, 0, 0, 0 }, { 0, size, 0, up }, { 0, 0, size, 0 } };
+    const ref_camera eye = { 1, 1.5, 1, 0, 0, c->width, c->height };
+    measures discarded;
+    ew_geometry geometry;
+    ew_screen_vertex screen[4];
+    measure_end(&discarded, 0.125);
+    measure_begin(&c->target, &eye, 0);
+    ew_geometry_init(&geometry, &c->raster);
+    if (!c->error) c->error = walk_view(&geometry.transform, c->width, c->height, size, up);
+    if (c->error) return;
+    ew_transform_vertices(&geometry.transform, v, 4, screen);
+    const ew_mesh mesh = { v, screen, NULL, indices, 6, 4 };
+    c->error = measure_mesh(&geometry, exact, &mesh);
 }
 
 measures walk_end(canvas *c)

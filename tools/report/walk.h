@@ -28,8 +28,16 @@ typedef struct canvas {
 void walk_begin(canvas *c, const pen *p, int width, int height, int texture_width, int texture_height);
 void walk_triangle(canvas *c, const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *d);
 void walk_quad(canvas *c, const ew_raster_vertex v[4]);
+/* Draws a quadrilateral through the geometry layer, alone: the eye at the origin, near distance 1, the picture ends
+ * at x = z and y = z / 1.5. Vertices, as q1.15, are scaled by `size` and moved up by `up`. */
+void walk_floor(canvas *c, const ew_vertex16 v[4], double size, double up);
+/* Sets the transform for a picture of such an eye. Returns EW_OK or an error. */
+int walk_view(ew_transform *t, int width, int height, double size, double up);
 /* Returns what was measured; the margin's loss ends the program. */
 measures walk_end(canvas *c);
+
+/* 256 x 256 texels that differ from their neighbours. */
+const ew_texture *walk_texture(void);
 
 /* A corner at (x, y) px, with near/z and texels. */
 ew_raster_vertex walk_at(double x, double y, double w, double u, double v);
@@ -44,7 +52,9 @@ void walk_row(const char *axis, const char *method, double x, double err_px, dou
               const char *state);
 void walk_report(const char *axis, const pen *p, double x, const canvas *c, const measures *m, long more_wrong, double limit);
 
-/* The axes of more_axes.c: those that are walked once, and those of each method. */
+/* The axes of memory_axes.c and link_axes.c, and of more_axes.c those that are walked once and those of each method. */
+void memory_axes(void);
+void link_axes(void);
 void more_axes(void);
 void more_axes_of(const pen *p);
 /* Prints cells of the heat maps, map,x,y,value,limit_y: of the one that depends on the size of the reciprocal

@@ -60,7 +60,7 @@ def fits(rows):
             points = [(row["fragments"] if sweep == "pixels" else row["x"], row["instructions"]) for row in own]
             a, b, worst = fit(points)
             (x0, y0), (x1, y1) = points[-2:]
-            yield {"target": target, "sweep": sweep, "unit": unit, "from": points[0][0], "to": points[-1][0], "per_unit": f"{b:.3f}",
+            yield {"target": target, "sweep": sweep, "unit": unit, "from": points[0][0], "to": points[-1][0], "per_unit": f"{b if abs(b) >= 0.0005 else 0:.3f}",
                    "constant": f"{a:.0f}", "worst_off": f"{worst:.3f}", "exponent": f"{math.log(y1 / y0) / math.log(x1 / x0):.3f}"}
 
 
@@ -86,14 +86,15 @@ def chart(script, name, title, x_text, y_text, series, logarithmic=True):
     for i, (_, _, points) in enumerate(series):
         script += [f"$s{i} << EOD", *(f"{x} {y}" for x, y in points), "EOD"]
     plots = [f"$s{i} using 1:2 with linespoints pt 7 ps 0.6 lw 2 lc rgb '{colour}' title '{label}'" for i, (label, colour, _) in enumerate(series)]
-    script += ["reset", "set grid lc rgb '#e4e4e4'", "set key below samplen 1.5", "set border 3", "set tics nomirror", "set bmargin 6.5",
+    script += ["reset", "set grid lt 1 lc rgb '#e4e4e4'", "set key below samplen 1.5", "set border 3", "set tics nomirror", "set bmargin 6.5",
                "set format '%g'", "set logscale xy" if logarithmic else "set yrange [0:*]", f"set title '{title}'", f"set xlabel '{x_text}'",
                f"set ylabel '{y_text}'"]
     output(script, name, "plot " + ", ".join(plots))
 
 
 def output(script, name, plot, width=480, height=400):
-    for terminal, suffix in ((f"svg size {width},{height} dynamic noenhanced font 'sans,12' background '#ffffff'", "svg"),
+    """Letters grow with the width: on the page all charts are equally wide."""
+    for terminal, suffix in ((f"svg size {width},{height} dynamic noenhanced font 'sans,{width // 40}' background '#ffffff'", "svg"),
                              (f"pngcairo size {width},{height} noenhanced font 'DejaVu Sans,10'", "png")):
         script += [f"set terminal {terminal}", f"set output '{name}.{suffix}'", plot]
 
@@ -119,14 +120,14 @@ def draw(folder, rows, sizes, stacks):
         builds = list(dict.fromkeys(build for build, _ in cells))
         for configuration in configurations:
             script.append(f'"{configuration}" ' + " ".join(str(cells[build, configuration]) for build in builds))
-        script += ["EOD", "set style data histograms", "set style fill solid", "set boxwidth 0.9", "set grid y lc rgb '#e4e4e4'", "set border 3",
-                   "set key above", "set xtics rotate by -28 nomirror", "set ytics nomirror", "set bmargin 9", "set rmargin 10", "set yrange [0:*]",
+        script += ["EOD", "set style data histograms", "set style fill solid", "set boxwidth 0.9", "set grid y lt 1 lc rgb '#e4e4e4'", "set border 3",
+                   "set key above", "set xtics rotate by -28 nomirror", "set ytics nomirror", "set bmargin 10", "set rmargin 12", "set yrange [0:*]",
                    f"set title '{title}'", f"set ylabel '{unit}'"]
         if name == "size-stack":
             script.append("set arrow from graph 0, first 512 to graph 1, first 512 nohead dt 2 lc rgb '#c8102e' front")
         shades = ["#f2a3ad", "#c8102e", "#9ad3aa", "#2a9d4a", "#f3cf99", "#d98a00"]
         plots = [f"$b using {i + 2}:xtic(1) lc rgb '{shades[i % len(shades)]}' title '{build}'" for i, build in enumerate(builds)]
-        output(script, name, "plot " + ", ".join(plots), 640, 460)
+        output(script, name, "plot " + ", ".join(plots), 640, 560)
         size_names.append((name, title))
     atlas.plot_script(folder, "work.gp", script)
     return names, size_names
