@@ -15,7 +15,7 @@ const promise_way promise_ways[PROMISE_WAYS] = {
     { "auto 2 px", EW_RUNG_AUTO, 32, 0, 32768 },
     { "runs 1/4 px", EW_RUNG_RUNS, 4, 0, 32768 },
     { "runs 2 px", EW_RUNG_RUNS, 32, 0, 32768 },
-    { "table", EW_RUNG_TABLE, 0, 0, 512 },
+    { "table", EW_RUNG_TABLE, 0, 0, 1408 },
     { "exact", EW_RUNG_EXACT, 0, 0, 32768 },
     { "affine", EW_RUNG_AFFINE, 0, 0, 512 },
     { "runs of 8", EW_RUNG_RUNS_8, 0, 8, 512 },

@@ -90,7 +90,7 @@ static void runs_keep_their_tolerance_and_use_it(void **state)
     }
 }
 
-/* One reciprocal for each pixel - the table's is good enough up to 512 texels -, or runs along
+/* One reciprocal for each pixel - the table's is good enough up to 1,408 texels -, or runs along
  * rows on which 1/z does not change. */
 static void tolerance_zero_is_exact(void **state)
 {

@@ -278,7 +278,8 @@ static int constant_suffices(const sides *s, uint32_t tolerance)
     return s->length[0] <= t && s->length[1] <= t && s->length[2] <= t;
 }
 
-static uint8_t choose_rung(ew_raster *raster, const ew_raster_vertex *const v[3], uint32_t w_min, uint32_t w_max, int newton)
+static uint8_t choose_rung(ew_raster *raster, const ew_raster_vertex *const v[3], uint32_t w_min, uint32_t w_max,
+                           uint8_t per_pixel)
 {
     const ew_material *m = &raster->material;
     sides s;
@@ -286,7 +287,7 @@ static uint8_t choose_rung(ew_raster *raster, const ew_raster_vertex *const v[3]
     sides_init(&s, &raster->work.now.setup.basis, v);
     if (m->tolerance > 0 && raster->texture.levels <= 1 && constant_suffices(&s, m->tolerance)) return EW_RUNG_CONSTANT;
     if (affine_suffices(&raster->work.now.setup.move, &s, m->tolerance, w_min, w_max)) return EW_RUNG_AFFINE;
-    return m->tolerance > 0 ? EW_RUNG_RUNS : newton ? EW_RUNG_EXACT : EW_RUNG_TABLE;
+    return m->tolerance > 0 ? EW_RUNG_RUNS : per_pixel;
 }
 
 /* A run of N pixels is displaced by at most N^2 |dw| / (4 w) (docs/error-bound.md). The
@@ -346,7 +347,7 @@ static uint16_t longest_of(const ew_triangle *t, const ew_raster *raster)
     return (uint16_t)(fraction < 15 ? UINT32_C(1) << (fraction - 6) : EW_LONGEST_RUN);
 }
 
-static void runs_init(ew_triangle *t, const ew_raster *raster, uint32_t w_min)
+static void runs_init(ew_triangle *t, const ew_raster *raster, uint32_t w_min, uint8_t newton)
 {
     const uint64_t dw = t->is_wide ? ew_abs64((int64_t)t->plane.wide[EW_PLANE_W].dx) :
                                      (uint64_t)ew_abs32((int32_t)t->plane.narrow[EW_PLANE_W].dx) << 32;
@@ -357,6 +358,7 @@ static void runs_init(ew_triangle *t, const ew_raster *raster, uint32_t w_min)
         /* where 1/z does not change along rows, a run is exact whatever its length */
         if (dw != 0 || !automatic) return;
         t->rung = EW_RUNG_RUNS;
+        t->newton = newton;
     }
     if (t->rung == EW_RUNG_AFFINE) t->sure_run = sure_run_of(t, dw, w_min);
     if (t->rung == EW_RUNG_AFFINE || t->rung == EW_RUNG_CONSTANT) return;
@@ -371,10 +373,11 @@ static void runs_init(ew_triangle *t, const ew_raster *raster, uint32_t w_min)
 
 /* ---- attributes ---- */
 
-/* The table is off by 2^-17 of the distance to corner 0 with 256 entries or more, and by
- * four times as much for each bit less: at most 1/256 texel for differences of TABLE_REACH
- * bits. */
-enum { TABLE_REACH = 12 + 9 - (EW_RECIP_BITS < 8 ? 2 * (8 - EW_RECIP_BITS) : 0) };
+/* Units of q20.12 that corners may be apart for the table to be off by 1/1024 texel (fixed.h has its errors),
+ * and how many of these e has room for, pixel by pixel and in runs (docs/error-bound.md). */
+#define TABLE_REACH (UINT32_C(4096) * (EW_RECIP_BITS == 4 ? 2 : EW_RECIP_BITS == 5 ? 7 : EW_RECIP_BITS == 6 ? 30 : \
+                                       EW_RECIP_BITS == 7 ? 92 : 128))
+enum { OF_PIXELS = 11, OF_RUNS = 6 };
 
 /* d w' / 2^(3 + bits), |d| < 2^bits; or d itself with its fraction bits for the affine rung. */
 static int32_t attribute(int32_t d, uint32_t w, int bits, int affine)
@@ -455,18 +458,21 @@ int ew_setup(ew_raster *raster)
     //@ split has_texture;
     t->attributes = (uint8_t)(has_shades ? 5 : has_texture ? 2 : 0);
     t->uv_bits = has_shades ? EW_SHADE_BITS : EW_BITS_LEAST;
+    uint32_t reach = has_shades ? UINT32_C(256) * 4096u : 0;
     if (has_texture) {
-        uint32_t reach = larger(larger(ew_abs32(v[1]->u - v[0]->u), ew_abs32(v[2]->u - v[0]->u)), /* |u| < 2^30 */
-                                larger(ew_abs32(v[1]->v - v[0]->v), ew_abs32(v[2]->v - v[0]->v)));
+        for (int k = 1; k < 3; k++) { /* |u| < 2^30 */
+            reach = larger(reach, larger(ew_abs32(v[k]->u - v[0]->u), ew_abs32(v[k]->v - v[0]->v)));
+        }
         int bits = 32 - ew_clz32(reach);
         if (bits > EW_BITS_MOST) return EW_ERR_RANGE;
         if (bits > t->uv_bits) t->uv_bits = (uint8_t)bits;
     }
     basis_of_vertices(b, c);
-    int needs_newton = t->uv_bits > TABLE_REACH;
     raster->work.now.setup.move.share = 0;
-    t->rung = t->attributes ? choose_rung(raster, v, w_min, w_max, needs_newton) : EW_RUNG_CONSTANT;
-    t->newton = (uint8_t)(t->rung == EW_RUNG_EXACT || (needs_newton && t->rung != EW_RUNG_TABLE));
+    const uint8_t per_pixel = reach <= OF_PIXELS * TABLE_REACH ? EW_RUNG_TABLE : EW_RUNG_EXACT;
+    const uint8_t newton_in_runs = reach > OF_RUNS * TABLE_REACH;
+    t->rung = t->attributes ? choose_rung(raster, v, w_min, w_max, per_pixel) : EW_RUNG_CONSTANT;
+    t->newton = t->rung == EW_RUNG_EXACT || (t->rung != EW_RUNG_TABLE && newton_in_runs);
 
     t->w_lead = (uint8_t)smaller((uint32_t)ew_clz32(w_max + w_max / 2), 24);
     for (int i = 0; i < 3; i++) w[i] = (v[i]->w << t->w_lead) >> 1;
@@ -492,6 +498,6 @@ int ew_setup(ew_raster *raster)
         ew_planes_pack(t, &raster->work.packing);
     }
     if (c->from > c->x0 || c->first > c->y0) ew_planes_go(t, (uint32_t)(c->from - c->x0), (uint32_t)(c->first - c->y0));
-    runs_init(t, raster, least);
+    runs_init(t, raster, least, newton_in_runs);
     return EW_OK;
 }

@@ -56,7 +56,7 @@ static double bound(const bench_method *method, uint16_t tolerance, const measur
     switch (method->bound) {
     case BOUND_AFFINE: return m->affine_bound;
     case BOUND_RUN: return promised ? m->run_bound * method->run * method->run : HUGE_VAL;
-    case BOUND_TABLE: return m->reach * exp2(-table[EW_RECIP_BITS - 4]) <= 1.0 / 64 ? 0 : HUGE_VAL;
+    case BOUND_TABLE: return m->reach * exp2(-table[EW_RECIP_BITS - 4]) <= 11.0 / 1024 ? 0 : HUGE_VAL;
     case BOUND_EXACT: return promised ? 0 : HUGE_VAL;
     default: return promised ? tolerance / 16.0 : HUGE_VAL;
     }
