@@ -433,9 +433,10 @@ static int is_seen(const ew_row_work *row, uint32_t number)
     return i != EW_NOT_SEEN;
 }
 
-static EW_OWN_FRAME int draw_late(ew_picture_work *w)
+int ew_draw_late(ew_picture_work *w)
 {
     int result = EW_OK;
+    if (w->row->late_first == EW_NOT_SEEN) return EW_OK;
     start_over(w);
     for (uint32_t i = 0; i < w->late_count && result >= 0; i++) {
         if (!is_seen(w->row, w->entries[i])) continue;
@@ -468,7 +469,7 @@ int ew_draw_seen(ew_picture_work *w)
             ew_forget(row, &active->seen);
         }
     }
-    return row->late_first != EW_NOT_SEEN ? draw_late(w) : EW_OK;
+    return EW_OK;
 }
 
 void ew_step_kept(ew_picture_work *w)

@@ -138,9 +138,10 @@ int ew_draw_band(ew_picture_work *w);
 int ew_draw_visible(ew_picture_work *w);
 
 /* What ew_draw_visible asks of active.c: shows all spans of the row to visible.c, once for each section;
- * draws what is seen of them; takes out what ended on this row. */
+ * draws what is seen of kept ones, and of late ones; takes out what ended on this row. */
 int ew_show_spans(ew_picture_work *w);
 int ew_draw_seen(ew_picture_work *w);
+int ew_draw_late(ew_picture_work *w);
 void ew_step_kept(ew_picture_work *w);
 
 /* ---- visible.c ---- */

@@ -183,9 +183,11 @@ void ew_show(ew_picture_work *w, ew_active *active, ew_place place, unsigned par
 
 static int is_same(const ew_seen *a, const ew_seen *b) { return a->number == b->number && a->span.part == b->span.part; }
 
+static int32_t end_of_row(const ew_picture_work *w) { return w->geometry->raster->scissor.x1; }
+
 /* Joins what touches and belongs to one triangle, and gives each triangle what is seen of it. What touches
  * the end of a section that is not the row's waits. */
-static void share_out(ew_picture_work *w, int32_t end_of_row)
+static EW_OWN_FRAME void share_out(ew_picture_work *w)
 {
     ew_row_work *row = w->row;
     while (row->first != EW_NOT_SEEN) {
@@ -195,7 +197,7 @@ static void share_out(ew_picture_work *w, int32_t end_of_row)
             s->span.to = row->seen[s->span.next].span.to;
             ew_forget(row, &s->span.next);
         }
-        if (s->span.to == row->to && row->to < end_of_row) return;
+        if (s->span.to == row->to && row->to < end_of_row(w)) return;
         uint16_t *link = s->place == EW_NO_PLACE ? &row->late_first : &ew_kept_at(w, s->place)->active.seen;
         const uint16_t i = row->first;
         row->first = s->span.next;
@@ -204,23 +206,37 @@ static void share_out(ew_picture_work *w, int32_t end_of_row)
     }
 }
 
-int ew_draw_visible(ew_picture_work *w)
+/* The next section begins at `from`. */
+static EW_OWN_FRAME void start_section(ew_picture_work *w, uint16_t from)
 {
     ew_row_work *row = w->row;
-    const ew_rect *scissor = &w->geometry->raster->scissor;
-    int error = EW_OK;
-    row->from = scissor->x0;
+    row->from = from;
+    row->to = (uint16_t)end_of_row(w);
+    row->hint = EW_NOT_SEEN;
+}
+
+/* Goes to the next section. Returns 0 behind the last. */
+static EW_OWN_FRAME int next_section(ew_picture_work *w)
+{
+    if (w->row->to == end_of_row(w)) return 0;
+    w->counts->sections++;
+    start_section(w, w->row->to);
+    return 1;
+}
+
+/* Below this lie the deepest calls. */
+int ew_draw_visible(ew_picture_work *w)
+{
+    int error;
+    start_section(w, w->geometry->raster->scissor.x0);
     do {
-        row->to = scissor->x1;
-        row->hint = EW_NOT_SEEN;
         error = ew_show_spans(w);
         if (error) return error;
-        share_out(w, scissor->x1);
+        share_out(w);
         error = ew_draw_seen(w);
+        if (!error) error = ew_draw_late(w);
         if (error) return error;
-        w->counts->sections += row->to < scissor->x1;
-        row->from = row->to;
-    } while (row->from < scissor->x1);
+    } while (next_section(w));
     ew_step_kept(w);
     return EW_OK;
 }
