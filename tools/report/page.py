@@ -7,6 +7,7 @@ import charts
 import memory
 import model
 import tables
+import visibility
 
 SHOWN_TOLERANCE = "0.25"
 PICTURES = [("reference", "what the referee draws in double precision"), ("ours", "what the library draws"),
@@ -313,7 +314,7 @@ def write(out, rows, auto, names, differing, bits, worked, in_memory, versions):
 <p>edgewalk is a fixed-point 3D rasterizer for microcontrollers that is told how much error a scene can bear and does no more work
 than that. This page shows what each way of drawing a texture costs on six processors, how far from the truth it is, and what a picture costs in <a href="#memory">less and less RAM</a>.</p>
 <nav><a href="#cost">Cost</a> <a href="#accuracy">Accuracy</a> <a href="#auto">The automatic choice</a> <a href="#work">Cost against work</a>
-<a href="#size">Flash and stack</a> <a href="#stability">Where methods fail</a>
+<a href="#visibility">What hides what</a> <a href="#size">Flash and stack</a> <a href="#stability">Where methods fail</a>
 {" ".join(f'<a href="#scene-{scene}">Scene {scene}</a>' for scene in scenes)} <a href="#how">How it was measured</a></nav>
 
 {first_sight(scenes, names)}
@@ -344,6 +345,9 @@ table sizes; <a href="auto.csv">auto.csv</a> names both for every case.</p>
 
 <h2 id="work">Cost against work</h2>
 {work_section(worked[0], worked[1], worked[4])}
+
+<h2 id="visibility">What hides what</h2>
+{visibility.section(out, table, charts_of)}
 
 <h2 id="size">Flash and stack</h2>
 {size_section(worked[2], worked[3], worked[5])}
