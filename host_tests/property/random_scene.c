@@ -1,5 +1,6 @@
 #include "random_scene.h"
 
+#include <assert.h>
 #include <string.h>
 
 #include "cases.h"
@@ -33,6 +34,7 @@ static void random_mesh(random_scene *scene, int i)
         a->u = (int16_t)pick(4096), a->v = (int16_t)pick(4096);
         scene->colours[i][v] = (ew_colour888){ (uint8_t)pick(256), (uint8_t)pick(256), (uint8_t)pick(256) };
     }
+    assert(o->vertex_count > 0);
     const uint32_t triangles = pick(SCENE_TRIANGLES + 1), spread = 1 + pick(o->vertex_count);
     for (uint32_t k = 0; k < 3 * triangles; k++) { /* neighbours in a strip, or anybody */
         scene->index[i][k] = (uint16_t)((k / 3 + pick(spread)) % o->vertex_count);

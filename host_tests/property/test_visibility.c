@@ -69,7 +69,9 @@ static void random_triangles(void)
 
 static int is_twin(uint32_t i)
 {
-    return i > 0 && scene.object[i].mesh.indices == scene.object[i - 1].mesh.indices && scene.screen[i] == scene.screen[i - 1];
+    if (i == 0) return 0;
+    const uint32_t before = i - 1;
+    return scene.object[i].mesh.indices == scene.object[before].mesh.indices && scene.screen[i] == scene.screen[before];
 }
 
 /* ---- drawing ---- */

@@ -380,6 +380,14 @@ static void show_kept(ew_picture_work *w, uint32_t number)
     w->kept_link = link;
 }
 
+/* Shows what was kept of triangles before the next that is not, and returns the number of that. */
+static EW_OWN_FRAME uint32_t show_until_next(ew_picture_work *w)
+{
+    const uint32_t late = number_of_late(w), next = number_of_next(w), number = late < next ? late : next;
+    show_kept(w, number);
+    return number;
+}
+
 /* Goes on with the triangle that was set up without room for it. */
 static ew_active *begun(ew_picture_work *w)
 {
@@ -389,25 +397,41 @@ static ew_active *begun(ew_picture_work *w)
     return active;
 }
 
-int ew_show_spans(ew_picture_work *w)
+/* Shows one that is late, `how` as start has it. Returns EW_OK or an error. */
+static EW_OWN_FRAME int show_late(ew_picture_work *w, int how)
 {
-    int result = EW_OK;
+    unsigned part = 0;
+    if (how == DRAW_LATE) ew_show(w, begun(w), EW_NO_PLACE, 0);
+    if (how != DRAW_FAN) return EW_OK;
+    for (; (how = next_of_fan(w)) > 0; part++) ew_show(w, begun(w), EW_NO_PLACE, part);
+    return how;
+}
+
+static EW_OWN_FRAME void start_showing(ew_picture_work *w)
+{
     w->kept_link = &w->kept;
     start_late(w);
     start_over(w);
-    while (result >= 0) {
-        const uint32_t late = number_of_late(w), next = number_of_next(w), number = late < next ? late : next;
-        show_kept(w, number);
-        if (number == EW_NO_TRIANGLE) break;
-        result = start_next(w, number, late < next);
-        if (result == DRAW_FAN) {
-            for (unsigned part = 0; (result = next_of_fan(w)) > 0; part++) ew_show(w, begun(w), EW_NO_PLACE, part);
-        } else if (result == DRAW_LATE) {
-            ew_show(w, begun(w), EW_NO_PLACE, 0);
-        }
-    }
+}
+
+static EW_OWN_FRAME void end_showing(ew_picture_work *w)
+{
     merge_late(w);
     if (w->active > w->counts->most_active) w->counts->most_active = w->active;
+}
+
+/* Small: the deepest calls lie below it. */
+int ew_show_spans(ew_picture_work *w)
+{
+    int result = EW_OK;
+    start_showing(w);
+    while (result >= 0) {
+        const uint32_t number = show_until_next(w);
+        if (number == EW_NO_TRIANGLE) break;
+        result = start_next(w, number, number == number_of_late(w));
+        if (result > 0) result = show_late(w, result);
+    }
+    end_showing(w);
     return result < 0 ? result : EW_OK;
 }
 
