@@ -80,6 +80,7 @@ static void draw_in_bands(const bench_scene *s, const bench_mode *mode, uint16_t
 static void in_bands(const bench_scene *s)
 {
     for (int i = 0; i < BENCH_MODES; i++) {
+        if (!EW_WITH_SPANS && bench_modes[i].visibility == EW_DEPTH_SPANS) continue;
         if (bench_modes[i].rows <= 16) draw_in_bands(s, &bench_modes[i], 64, "64x48");
 #if SAME_BITS_ROOM >= 3
         if (bench_modes[i].rows <= 64) draw_in_bands(s, &bench_modes[i], 320, "320x240");

@@ -75,7 +75,7 @@ size_t ew_picture_least(const ew_picture *picture, const ew_object *objects, uin
 size_t ew_picture_bytes(const ew_picture *picture, const ew_object *objects, uint32_t count, uint32_t active)
 {
     enum { AND = 448 };
-    const uint32_t of_active = picture->visibility == EW_DEPTH_SPANS ? 192 : 112;
+    const uint32_t of_active = picture->visibility == EW_DEPTH_SPANS ? 256 : 112;
     memory_plan plan;
     if (!plan_init(&plan, picture, objects, count)) return 0;
     if (!plan.is_listed) return (size_t)plan.least;

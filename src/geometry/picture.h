@@ -146,8 +146,8 @@ void ew_step_kept(ew_picture_work *w);
 
 /* ---- visible.c ---- */
 
-/* What w->row takes at least and for each triangle, in bytes. */
-enum { EW_SEEN_LEAST = 8, EW_SEEN_OF_ONE = 2 };
+/* What w->row takes at least, in bytes. */
+enum { EW_SEEN_LEAST = 8 };
 #define EW_ROW_LEAST (sizeof(ew_row_work) + EW_SEEN_LEAST * sizeof(ew_seen))
 
 /* Makes w->row, in a share of that memory. Returns how much it takes. */

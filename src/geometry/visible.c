@@ -15,10 +15,11 @@
 
 size_t ew_row_init(ew_picture_work *w, void *memory, size_t bytes)
 {
-    /* as many as there may be on a row, and the one that waits; else of each triangle's memory a share */
-    enum { SHARE = (EW_SEEN_OF_ONE * sizeof(ew_seen) * 256 + 191) / 192 }; /* of 256 */
+    /* as many as there may be on a row, and the one that waits; else two for each triangle, for which there are
+     * 256 bytes (ew_picture_bytes) */
+    enum { SHARE = 256 / (2 * sizeof(ew_seen)) };
     ew_row_work *row = w->row = (ew_row_work *)memory;
-    size_t count = EW_SEEN_LEAST + (bytes - EW_ROW_LEAST) / 256 * SHARE / sizeof(ew_seen);
+    size_t count = EW_SEEN_LEAST + (bytes - EW_ROW_LEAST) / SHARE / sizeof(ew_seen);
     if (count > w->picture->width + 1u) count = w->picture->width > EW_SEEN_LEAST ? w->picture->width + 1u : EW_SEEN_LEAST;
     row->count = row->unused_count = (uint16_t)count;
     for (uint16_t i = 0; i < row->count; i++) row->seen[i].span.next = (uint16_t)(i + 1u);

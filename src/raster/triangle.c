@@ -271,7 +271,7 @@ int ew_raster_find_span(const ew_raster *raster, ew_active *active, ew_active_sp
 
 void ew_raster_draw_columns(ew_raster *raster, const ew_active *active, uint16_t from, uint16_t to)
 {
-    EW_ASSERT(!active->triangle.is_quick); /* which needs depth */
+    EW_ASSERT(active->triangle.walk == WALK_ANY); /* all others need depth */
     const ew_edge upright = { .remainder = -1, .dy = 1 };
     ew_edge *edge = raster->work.edge;
     copy_to_work(raster, active);
