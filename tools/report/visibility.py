@@ -136,7 +136,9 @@ def main():
     parser.add_argument("--out", required=True)
     args = parser.parse_args()
     for row in measure(args.build, args.out, TARGETS):
-        print(f"{row['target']}: spans against {row['against']}: cheaper from {row['spans_are_cheaper_from']} on ({row['unit'].replace('`at`', str(row['at']))})")
+        where = row["spans_are_cheaper_from"]
+        where = where if where in ("always", "never") else f"from {where} on"
+        print(f"{row['target']}: spans cheaper than {row['against']}: {where} ({row['unit'].replace('`at`', str(row['at']))})")
 
 
 if __name__ == "__main__":
