@@ -215,9 +215,9 @@ static EW_OWN_FRAME int clipped(ew_picture_work *w, const uint16_t *index)
     return DRAW_FAN;
 }
 
-/* Sets the triangle at hand up, with its corners in w->screen. Returns DONE, DRAW, DRAW_FAN with the fan
- * ready for next_of_fan, or an error. */
-static int set_up(ew_picture_work *w)
+/* Makes the triangle at hand ready, with its corners in w->screen. Returns DONE, DRAW for `begin` or DRAW_FAN for
+ * next_of_fan. */
+static EW_OWN_FRAME int make_ready(ew_picture_work *w)
 {
     const ew_object *object = w->at;
     const ew_mesh *mesh = &object->mesh;
@@ -232,17 +232,17 @@ static int set_up(ew_picture_work *w)
         ew_corner_from(&v[k], &mesh->vertices[index[k]], &s[k], uv_unit);
         v[k].colour = mesh->colours ? mesh->colours[index[k]] : ew_white;
     }
-    const int result = begin(w);
-    return result > 0 ? DRAW : result;
+    return DRAW;
 }
 
 /* Sets the triangle at hand up; kept ones stand at *kept_link then. Returns one of the above or an
  * error. */
 static EW_OWN_FRAME int start(ew_picture_work *w)
 {
-    const int result = set_up(w);
+    int result = make_ready(w);
     if (result == DRAW_FAN) return keep_fan(w);
-    if (result != DRAW) return result;
+    if (result == DRAW) result = begin(w);
+    if (result <= 0) return result;
     if (!w->row && ew_raster_begun_end(w->geometry->raster) <= w->bottom) return DRAW;
     return keep(w, w->kept_link) ? KEPT : DRAW_LATE;
 }
@@ -468,8 +468,8 @@ int ew_draw_late(ew_picture_work *w)
         if (result) break;
         w->counts->again++;
         for (int k = 0; k < 3; k++) fetch(w, k);
-        result = set_up(w);
-        if (result == DRAW) draw_begun(w, 0);
+        result = make_ready(w);
+        if (result == DRAW && (result = begin(w)) > 0) draw_begun(w, 0);
         else if (result == DRAW_FAN) for (unsigned part = 0; (result = next_of_fan(w)) > 0; part++) draw_begun(w, part);
     }
     return result < 0 ? result : EW_OK;
