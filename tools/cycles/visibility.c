@@ -4,6 +4,7 @@
  *
  * On the host: `visibility --list` names the cases. */
 #include "edgewalk/picture.h"
+#include "drawn.h"
 
 enum { W = 256, H = 128, LEAST_EDGE = 4, SHEETS = 16, TOLERANCE = 4, MEMORY = 1 << 21 };
 
@@ -18,8 +19,6 @@ typedef struct way {
 static const way ways[] = { { "full z", H, EW_DEPTH_BUFFER }, { "1-D z", 1, EW_DEPTH_BUFFER }, { "spans", 1, EW_DEPTH_SPANS } };
 
 #define COUNT_OF(a) ((int)(sizeof(a) / sizeof *(a)))
-
-void bench_line(const char *text);
 
 enum { MOST_ACROSS = W / LEAST_EDGE + 2, MOST_DOWN = H / LEAST_EDGE + 2 };
 static ew_vertex16 vertices[(MOST_ACROSS + 1) * (MOST_DOWN + 1)];
@@ -43,9 +42,8 @@ void bench_end(void) { __asm__ volatile(""); }
 static void no_band(void *user, const ew_target *band) { (void)user, (void)band; }
 static void hash_band(void *user, const ew_target *band)
 {
-    const uint16_t *c = band->colour;
     (void)user;
-    for (uint32_t i = 0; i < (uint32_t)W * band->height; i++) band_hash = (band_hash ^ c[i]) * UINT32_C(16777619);
+    band_hash = drawn_hash(band_hash, band->colour, NULL, (uint32_t)W * band->height);
 }
 
 /* Cells of edge x edge px, two triangles each, and one more on each side; x and y in units of 1/64 px from the
@@ -101,21 +99,13 @@ static int run(const way *by, int edge, uint32_t complexity, ew_picture_counts *
         error = make_object(&objects[k], &texture, k, complexity);
     }
     ew_geometry_init(&geometry, &raster);
-    band_hash = UINT32_C(2166136261);
+    band_hash = DRAWN_START;
     if (!error) error = ew_picture_draw(&p, objects, complexity, &geometry, memory, sizeof memory, counts);
     p.band = no_band;
     if (!error) error = bench_draw(&p, complexity, sizeof memory, counts);
     bench_end();
     if (error || counts->again || counts->crossings || counts->sections) return 1;
     return 0;
-}
-
-static void print_hash(void)
-{
-    char text[10] = { 0 };
-    for (int i = 0; i < 8; i++) text[i] = "0123456789abcdef"[band_hash >> (28 - 4 * i) & 15];
-    text[8] = '\n';
-    bench_line(text);
 }
 
 static int run_all(void (*done)(const char *way, int edge, uint32_t complexity, const ew_picture_counts *counts))
@@ -139,15 +129,10 @@ static int run_all(void (*done)(const char *way, int edge, uint32_t complexity, 
 static void print_case(const char *way, int edge, uint32_t complexity, const ew_picture_counts *counts)
 {
     (void)way, (void)edge, (void)complexity, (void)counts;
-    print_hash();
+    drawn_print(band_hash);
 }
 
 #if __STDC_HOSTED__
-#include <stdio.h>
-#include <string.h>
-
-void bench_line(const char *text) { fputs(text, stdout); }
-
 static void list_case(const char *way, int edge, uint32_t complexity, const ew_picture_counts *counts)
 {
     printf("%s,%d,%u,%d,%u\n", way, edge, (unsigned)complexity, W * H, (unsigned)counts->most_active);
@@ -159,8 +144,5 @@ int main(int argc, char **argv)
     return argc > 1 ? 2 : run_all(print_case);
 }
 #else
-#include "../../examples/firmware/board/board.h"
-
-void bench_line(const char *text) { board_print(text); }
 int main(void) { return run_all(print_case); }
 #endif
