@@ -208,7 +208,7 @@ def memory_section(rows, names):
               f"{row['instructions']:,}", f"{row['of_at_once']}", str(row["active"]), str(row["set_up_again"])] for row in shown]
     more = "".join(f"<details><summary>{text} against RAM</summary><div class='grid'>{charts_of(of_speed)}</div></details>"
                    for text, of_speed in list(zip(memory.SPEEDS.values(), names.values()))[:1] if names["cycles_typical"])
-    return f"""<p>One picture of 320 x 240 pixels, drawn at once, in bands of 32, 16, 8 and 4 rows, and line by line: the same bit for bit.
+    return f"""<p>One picture of 320 x 240 pixels, drawn at once, in bands of 32, 16, 8 and 4 rows, and line by line: the same bit for bit; and by spans, without a depth buffer.
 RAM is what it takes beside the scene and its objects, colour and depth buffers included; with less of it, triangles that reach over
 several bands are kept or set up again. Automatic choice at 1/4 pixel; the clear is counted. Each line is a scene, its right end the
 picture at once, its left end line by line. <a href="memory.csv">memory.csv</a></p>
