@@ -370,10 +370,11 @@ static EW_OWN_FRAME int prepare(const ew_picture *picture, const ew_object *obje
     return init_raster(w);
 }
 
-/* Whether the band at hand is the last of those that are handed over together. */
-static int is_finished(const ew_picture_work *w)
+/* Hands over the band at hand with those before it, if it is the last of these. */
+static EW_OWN_FRAME void hand_over(const ew_picture_work *w)
 {
-    return w->band + 1u == w->bands || (w->band + 1u) % w->bands_at_once == 0;
+    const uint32_t behind = w->band + 1u;
+    if (behind == w->bands || behind % w->bands_at_once == 0) w->picture->band(w->picture->user, &w->geometry->raster->target);
 }
 
 /* One band after the other, in the caller's frame: below this lie the deepest calls. */
@@ -387,7 +388,7 @@ static inline int draw(ew_picture_work *w)
             else if (w->is_listed) error = ew_draw_band(w);
             else while (error >= 0 && next_mesh(w, &error)) error = (int)ew_draw_triangles(w->geometry, &w->geometry->scene.mesh);
         }
-        if (error >= 0 && is_finished(w)) w->picture->band(w->picture->user, &w->geometry->raster->target);
+        if (error >= 0) hand_over(w);
     }
     return error < 0 ? error : EW_OK;
 }
