@@ -45,7 +45,7 @@ $(T)/test_readme: $(UNIT)/test_readme.o $(T)/readme_example.o $(UNIT)/unit.o $(B
 
 # ---- configurations: each needs a core of its own ----
 # recip-N: the reciprocals with a table of 2^N entries; raster-N: coverage at N subpixel bits;
-# geometry-pieces: products as on a core without a long multiply; fill-without-X and
+# geometry-pieces: products as on a core without a long multiply; visibility-without-SPANS, fill-without-X and
 # draw2d-without-X: with EW_WITH_X = 0, under UBSan; SOME_LOOPS and OTHER_LOOPS share the loops,
 # EVERYTHING is all of it.
 FILL_PARTS := SHADING FOG BLENDS CUTOUTS BILINEAR MIPS WRAPS TEXTURE_FORMATS TARGET_FORMATS DITHER
@@ -53,7 +53,7 @@ SOME_LOOPS := LOOP_FLAT LOOP_NO_DEPTH LOOP_LIT LOOP_GREY4
 OTHER_LOOPS := LOOP_GOURAUD LOOP_KEYED LOOP_BILINEAR
 EVERYTHING := $(FILL_PARTS) $(SOME_LOOPS) $(OTHER_LOOPS)
 CONFIG_TESTS := $(foreach n,4 5 6 7 9,$(T)/test_recip-$(n)) $(foreach n,4 6,$(T)/test_raster-$(n)) $(T)/test_geometry-pieces \
-  $(foreach part,$(FILL_PARTS) SOME_LOOPS OTHER_LOOPS EVERYTHING,$(T)/test_fill-without-$(part)) $(T)/test_draw2d-without-EVERYTHING
+  $(T)/test_visibility-without-SPANS $(foreach part,$(FILL_PARTS) SOME_LOOPS OTHER_LOOPS EVERYTHING,$(T)/test_fill-without-$(part)) $(T)/test_draw2d-without-EVERYTHING
 $(CONFIG_TESTS): $(wildcard include/edgewalk/*.h fixed/*.inc src/*/*.h src/*/*.inc $(addprefix host_tests/,unit/unit.h reference/*.h accuracy/*.h))
 $(T)/test_recip-%: host_tests/unit/test_recip.c host_tests/unit/unit.c fixed/recip.c
 	@mkdir -p $(@D); echo "CC $@"
@@ -66,6 +66,10 @@ $(T)/test_geometry-pieces: $(addprefix host_tests/,unit/test_geometry.c unit/uni
   reference/scenes.c accuracy/measure.c) $(filter fixed/% src/raster/% src/geometry/%,$(CORE_SRCS))
 	@mkdir -p $(@D); echo "CC $@"
 	@$(CC) $(HOST_CFLAGS) -DEW_LONG_MULTIPLY=0 -DEW_TRACE=1 -o $@ $(filter %.c,$^) -lcmocka -lm
+$(T)/test_visibility-without-SPANS: $(addprefix host_tests/,property/test_visibility.c property/random_scene.c property/pictures.c \
+  property/cases.c unit/unit.c reference/scenes.c) $(filter fixed/% src/raster/% src/geometry/%,$(CORE_SRCS))
+	@mkdir -p $(@D); echo "CC $@"
+	@$(CC) $(HOST_CFLAGS) -Werror -DEW_WITH_SPANS=0 -o $@ $(filter %.c,$^) -lcmocka -lm -pthread
 define test_without
 $(T)/test_$(1)-without-%: host_tests/unit/test_$(1).c host_tests/unit/unit.c host_tests/reference/ref_fill.c \
   $(filter fixed/% src/raster/%,$(CORE_SRCS))

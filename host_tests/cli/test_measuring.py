@@ -21,6 +21,7 @@ import memory  # noqa: E402
 import model  # noqa: E402
 import report  # noqa: E402
 import tables  # noqa: E402
+import visibility  # noqa: E402
 import work  # noqa: E402
 
 
@@ -168,6 +169,12 @@ class Work(unittest.TestCase):
         self.assertAlmostEqual(b, 3)
         self.assertAlmostEqual(worst, 0)
         self.assertGreater(work.fit([(1, 1), (10, 100), (100, 10000)])[2], 0.5)
+
+    def test_where_two_ways_cross(self):
+        self.assertAlmostEqual(visibility.crossing([(1, 2.0), (4, 0.5), (16, 0.1)]), 2)
+        self.assertAlmostEqual(visibility.crossing([(1, 0.5), (4, 2.0), (16, 0.5)]), 8)
+        self.assertEqual(visibility.crossing([(1, 0.9), (4, 0.5)]), "always")
+        self.assertEqual(visibility.crossing([(1, 0.5), (4, 1.0)]), "never")
 
     def test_the_worst_frame(self):
         rows = [{"target": "m3", "sweep": "s", "x": i, "instructions": n, "cycles_typical": 2 * n, "notes": ""} for i, n in enumerate((10, 40, 10))]

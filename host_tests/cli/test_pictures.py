@@ -75,6 +75,24 @@ class Models(unittest.TestCase):
                 with open(files[0], "rb") as at_once, open(files[-1], "rb") as banded, self.subTest(model=model, options=options):
                     self.assertTrue(at_once.read() == banded.read())
 
+    def test_span_visibility(self):
+        """Baked materials are opaque: one picture in any memory and bands."""
+        models = [os.path.join(SHARED, name) for name in ("box_animated/BoxAnimated.glb", "chest/chest_gold.glb", "fox/Fox.glb")]
+        models = [model for model in models if os.path.exists(model)]
+        if not models:
+            self.skipTest("the folder ../shared/models is not there")
+        for model in models:
+            scene, files = self.baked(model), []
+            for options in ([], ["--rows", "1", "--active", "0"], ["--rows", "8"], ["--rows", "37", "--active", "3"]):
+                files.append(os.path.join(self.folder.name, f"spans-{len(files)}.png"))
+                done = run("ew-render", scene, "-o", files[-1], "--size", "200x123", "--frames", "3", "--fps", "3", "-a",
+                           "--visibility", "spans", *options)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertRegex(done.stdout, r"\d+ crossings, \d+ sections")
+                with open(files[0], "rb") as first, open(files[-1], "rb") as other, self.subTest(model=model, options=options):
+                    self.assertTrue(first.read() == other.read())
+        self.assertEqual(run("ew-render", scene, "--visibility", "z").returncode, 2)
+
     def test_courtyard(self):
         scene = os.path.join(self.folder.name, "courtyard.glb")
         subprocess.run(["python3", os.path.join(ROOT, "examples/scenes/courtyard.py"), "-o", scene], check=True,

@@ -48,7 +48,7 @@ static void hash_band(void *user, const ew_target *band)
     const uint32_t pixels = (uint32_t)band->height * band->stride;
     (void)user;
     band_hash = picture_hash(band_hash, band->colour, pixels);
-    band_hash = picture_hash(band_hash, band->depth, pixels);
+    if (band->depth) band_hash = picture_hash(band_hash, band->depth, pixels);
 }
 
 /* The list of scene B and its vertices do not fit in the memory of a picture of 64x48. */
@@ -61,8 +61,8 @@ static uint8_t band_memory[20000];
 static void draw_in_bands(const bench_scene *s, const bench_mode *mode, uint16_t width, const char *size)
 {
     const uint16_t height = (uint16_t)(width * 3u / 4u);
-    const ew_picture picture = { .width = width, .height = height, .buffers = 1, .rows = mode->rows, .end_row = height,
-                                 .scissor = { 0, 0, width, height }, .band = hash_band };
+    const ew_picture picture = { .width = width, .height = height, .buffers = 1, .rows = mode->rows, .visibility = mode->visibility,
+                                 .end_row = height, .scissor = { 0, 0, width, height }, .band = hash_band };
     const ew_texture texture = { .texels = bench_texture, .width = 256, .height = 256 };
     const ew_material material = { .texture = &texture, .tolerance = BENCH_MODE_TOLERANCE, .rung = EW_RUNG_AUTO };
     const ew_mesh mesh = { .vertices = s->vertices, .indices = s->indices, .index_count = s->index_count, .uv_fraction_bits = 4 };
@@ -80,6 +80,7 @@ static void draw_in_bands(const bench_scene *s, const bench_mode *mode, uint16_t
 static void in_bands(const bench_scene *s)
 {
     for (int i = 0; i < BENCH_MODES; i++) {
+        if (!EW_WITH_SPANS && bench_modes[i].visibility == EW_DEPTH_SPANS) continue;
         if (bench_modes[i].rows <= 16) draw_in_bands(s, &bench_modes[i], 64, "64x48");
 #if SAME_BITS_ROOM >= 3
         if (bench_modes[i].rows <= 64) draw_in_bands(s, &bench_modes[i], 320, "320x240");

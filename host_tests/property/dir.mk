@@ -1,7 +1,7 @@
 # Properties of random cases: a slice in `make test`, all of them in `make fuzz`.
 PROPERTY := $(B)/host_tests/property
 CASES := $(addprefix $(PROPERTY)/,cases.o triangles.o) $(UNIT)/unit.o
-PROPERTY_TESTS := $(addprefix $(T)/test_,coverage coverage_hits meshes displacement rows modes)
+PROPERTY_TESTS := $(addprefix $(T)/test_,coverage coverage_hits meshes displacement rows modes visibility)
 
 # The core as it is shipped, and with its trace.
 $(PROPERTY)/test_coverage.o: HOST_INC =
@@ -15,7 +15,10 @@ $(T)/test_coverage_hits: $(PROPERTY)/test_coverage_hits.o $(CASES) $(B)/host_tes
 $(T)/test_displacement: $(PROPERTY)/test_displacement.o $(PROPERTY)/promise.o $(CASES) \
   $(addprefix $(B)/host_tests/reference/,exact.o referee.o scenes.o) $(TRACE_OBJS)
 	$(LINK_TEST)
-$(T)/test_rows $(T)/test_modes: $(T)/test_%: $(PROPERTY)/test_%.o $(PROPERTY)/pictures.o $(CASES) $(LIB)
+$(T)/test_rows $(T)/test_modes: $(T)/test_%: $(PROPERTY)/test_%.o $(PROPERTY)/pictures.o $(PROPERTY)/random_scene.o $(CASES) $(LIB)
+	$(LINK_TEST) -pthread
+$(T)/test_visibility: $(addprefix $(PROPERTY)/,test_visibility.o pictures.o random_scene.o) $(CASES) \
+  $(B)/host_tests/reference/scenes.o $(LIB)
 	$(LINK_TEST) -pthread
 
 # The search for the triangle that uses most of its promise, and those that it found.

@@ -6,91 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "edgewalk/picture.h"
-#include "pictures.h"
+#include "random_scene.h"
 
-enum { OBJECTS = 4, VERTICES = 48, INDICES = 3 * 60, W = PICTURE_WIDTH, H = PICTURE_HEIGHT };
-
-static struct {
-    ew_picture picture;
-    ew_object object[OBJECTS];
-    ew_vertex16 vertex[OBJECTS][VERTICES];
-    ew_colour888 colours[OBJECTS][VERTICES];
-    uint16_t index[OBJECTS][INDICES];
-    ew_screen_vertex screen[OBJECTS][VERTICES];
-    uint32_t count;
-} scene;
-
+static random_scene scene;
 static picture whole;
-
-/* ---- random scenes ---- */
-
-static int32_t entry(int bits) { return (int32_t)pick(UINT32_C(2) << bits) - (INT32_C(1) << bits); }
-
-/* Vertices anywhere around the camera: near plane and guard band are crossed often. */
-static void random_transform(ew_transform *t)
-{
-    const ew_projection projection = { entry(15) + 98304, entry(15) + 98304, { INT32_C(1) << 29, -1 } };
-    do {
-        const ew_viewport viewport = pick(2) ? (ew_viewport){ 0, 0, scene.picture.width, scene.picture.height } :
-                                               (ew_viewport){ (int16_t)entry(5), (int16_t)entry(5), (uint16_t)(1 + pick(120)), (uint16_t)(1 + pick(90)) };
-        const int size = 14 + (int)pick(5);
-        ew_mat34 m;
-        for (int i = 0; i < 3; i++) {
-            const int32_t from = i == 2 ? -(int32_t)pick(pick(2) ? 3u << 18 : 3u << 15) : entry(size);
-            ew_row_from_q16_16(&m.row[i], entry(size), entry(size), entry(size), from);
-        }
-        if (ew_transform_set(t, &projection, &m, &viewport) == EW_OK) return;
-    } while (1);
-}
-
-static void random_mesh(int i)
-{
-    ew_object *o = &scene.object[i];
-    o->vertex_count = 3 + pick(VERTICES - 2);
-    for (uint32_t v = 0; v < o->vertex_count; v++) {
-        ew_vertex16 *a = &scene.vertex[i][v];
-        a->x = (int16_t)test_random(), a->y = (int16_t)test_random(), a->z = (int16_t)test_random();
-        a->u = (int16_t)pick(4096), a->v = (int16_t)pick(4096);
-        scene.colours[i][v] = (ew_colour888){ (uint8_t)pick(256), (uint8_t)pick(256), (uint8_t)pick(256) };
-    }
-    const uint32_t triangles = pick(INDICES / 3 + 1), spread = 1 + pick(o->vertex_count);
-    for (uint32_t k = 0; k < 3 * triangles; k++) { /* neighbours in a strip, or anybody */
-        scene.index[i][k] = (uint16_t)((k / 3 + pick(spread)) % o->vertex_count);
-    }
-    o->mesh = (ew_mesh){ .vertices = scene.vertex[i], .colours = pick(2) ? scene.colours[i] : NULL, .indices = scene.index[i],
-                         .index_count = 3 * triangles, .uv_fraction_bits = (uint8_t)pick(9) };
-    ew_transform_vertices(&o->transform, scene.vertex[i], o->vertex_count, scene.screen[i]);
-    if (pick(3) == 0) o->mesh.screen = scene.screen[i];
-}
-
-static void random_scene(void)
-{
-    ew_target target;
-    random_target(&target);
-    ew_picture *p = &scene.picture;
-    memset(p, 0, sizeof *p);
-    p->width = target.width, p->height = target.height;
-    p->format = target.format, p->dither = target.dither;
-    p->visibility = target.depth ? EW_DEPTH_BUFFER : EW_DEPTH_NONE;
-    p->background = (uint16_t)test_random();
-    random_scissor(&p->scissor, &target);
-    p->end_row = p->height;
-    if (pick(3) == 0) p->fog_near = UINT32_C(1) << 31, p->fog_far = UINT32_C(1) << 27, p->fog_colour = (uint16_t)test_random();
-    if (pick(3) == 0) p->cost = &ew_cost_m3;
-    scene.count = pick(OBJECTS + 1);
-    for (uint32_t i = 0; i < scene.count; i++) {
-        ew_object *o = &scene.object[i];
-        random_transform(&o->transform);
-        random_mesh((int)i);
-        random_material(&o->material, &o->texture);
-        if (pick(3)) o->material.flags &= (uint8_t)~EW_DOUBLE_SIDED;
-    }
-}
 
 /* ---- the picture at once, by the layers below ---- */
 
-static uint32_t stride(void) { return (scene.picture.width + 7u) / 8u * 8u; }
+static uint32_t stride(void) { return random_scene_stride(&scene); }
 
 static int draw_whole(void)
 {
@@ -204,7 +127,7 @@ static void any_band_any_memory(void **state)
     static context c;
     long drawn = 0, count = 0, again = 0, active = 0, refused = 0;
     for (cases k = cases_of("modes", 6000, 300000); cases_next(&k); count++) {
-        random_scene();
+        random_scene_init(&scene);
         c.picture = scene.picture;
         c.picture.buffers = (uint8_t)(1 + pick(2));
         c.picture.rows = (uint16_t)(pick(2) ? 1 : 1 + pick(c.picture.height));
@@ -230,7 +153,7 @@ static void enough_memory(void **state)
     static context c;
     long set_up = 0;
     for (cases k = cases_of("modes, enough", 1000, 50000); cases_next(&k);) {
-        random_scene();
+        random_scene_init(&scene);
         c.picture = scene.picture;
         c.picture.buffers = 1;
         c.picture.rows = (uint16_t)(1 + pick(c.picture.height));
@@ -254,7 +177,7 @@ static void two_threads(void **state)
     (void)state;
     static context c[2];
     for (cases k = cases_of("modes, threads", 1000, 30000); cases_next(&k);) {
-        random_scene();
+        random_scene_init(&scene);
         if (scene.picture.height < 2) continue;
         const uint16_t border = (uint16_t)(1 + pick(scene.picture.height - 1u));
         for (int i = 0; i < 2; i++) {

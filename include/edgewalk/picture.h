@@ -27,7 +27,9 @@ typedef struct ew_object {
 /* How it is decided which triangle is seen at a pixel. */
 typedef enum ew_visibility {
     EW_DEPTH_BUFFER = 0, /* by depth, 16 bits for each pixel of a band                      */
-    EW_DEPTH_NONE        /* by order: what is drawn later covers what is drawn before       */
+    EW_DEPTH_NONE,       /* by order: what is drawn later covers what is drawn before       */
+    EW_DEPTH_SPANS       /* by depth, where spans begin and end; only what is seen is drawn, and
+                            everything has to be opaque (docs/memory-modes.md)              */
 } ew_visibility;
 
 /* What a picture is and how it is drawn. */
@@ -57,7 +59,13 @@ typedef struct ew_picture_counts {
     uint32_t set_up;      /* triangles and parts of clipped ones; not in one band             */
     uint32_t again;       /* set-ups of triangles that were set up before: for want of memory  */
     uint32_t transformed; /* vertices                                                         */
-    uint32_t most_active; /* triangles that went on to another band, at most                  */
+    uint32_t most_active; /* triangles that went on to another band, at most; with EW_DEPTH_SPANS
+                             those of one row                                                */
+    uint32_t crossings;   /* with EW_DEPTH_SPANS: spans of which a part is in front of another span and a
+                             part behind it, where both were seen until then: 0 unless triangles
+                             pass through one another. They are cut there                    */
+    uint32_t sections;    /* with EW_DEPTH_SPANS: what rows were cut into beyond one piece each, for
+                             want of memory                                                  */
 } ew_picture_counts;
 
 /* The least memory that ew_picture_draw asks for; 0 for a picture out of its ranges, or more than
@@ -66,14 +74,15 @@ size_t ew_picture_least(const ew_picture *picture, const ew_object *objects, uin
 
 /* What it takes for `active` triangles that reach from one band into the next to be set up once:
  * the least, 448 bytes, and 112 for each, which is enough where most of them are neither wide nor
- * shaded (docs/memory-modes.md). */
+ * shaded (docs/memory-modes.md); 256 for each with EW_DEPTH_SPANS. */
 size_t ew_picture_bytes(const ew_picture *picture, const ew_object *objects, uint32_t count, uint32_t active);
 
 /* Draws objects in order, as ew_draw_triangles would after ew_raster_clear, with geometry->raster,
  * which is initialised first. All of the memory is used; it needs no alignment and holds nothing
  * afterwards, but for the last band. `counts` may be NULL.
- * Returns EW_OK, EW_ERR_ROOM for less than ew_picture_least, EW_ERR_ARGUMENT, EW_ERR_UNSUPPORTED or
- * EW_ERR_RANGE; rows that came before an error were handed over. */
+ * Returns EW_OK, EW_ERR_ROOM for less than ew_picture_least, EW_ERR_ARGUMENT, EW_ERR_UNSUPPORTED (also for
+ * EW_DEPTH_SPANS with a material that blends, leaves texels out or goes without a part of the depth test)
+ * or EW_ERR_RANGE; rows that came before an error were handed over. */
 int ew_picture_draw(const ew_picture *picture, const ew_object *objects, uint32_t count, ew_geometry *geometry,
                     void *memory, size_t bytes, ew_picture_counts *counts);
 

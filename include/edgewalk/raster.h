@@ -258,6 +258,20 @@ void ew_raster_keep(ew_raster *raster, ew_active *active);
 /* Returns whether a pixel was reached. It is done when active->row is active->end. */
 int ew_raster_draw_active(ew_raster *raster, ew_active *active);
 
+/* The same row by row and column by column, for who finds out what is seen on a row and draws nothing
+ * else: ew_raster_find_span says where the scissor's one row lies in its columns, ew_raster_draw_columns
+ * draws columns of that, cut there as a scissor cuts, on a target without depth; both as often as it
+ * takes. ew_active_step goes on to the next row. */
+
+/* Returns whether there is a pixel: not above the triangle's first row, which may lie below. */
+int ew_raster_find_span(const ew_raster *raster, ew_active *active, ew_active_span *span);
+
+/* Columns from <= x < to. */
+void ew_raster_draw_columns(ew_raster *raster, const ew_active *active, uint16_t from, uint16_t to);
+
+/* From the scissor's row, after ew_raster_find_span there. */
+void ew_active_step(ew_active *active);
+
 #if EW_TRACE
 /* For tests: what was set up, and every fragment before its depth test. u and v are modulo
  * the texture's period (twice its size where it is mirrored; clamped ones are whole) and

@@ -86,14 +86,25 @@ typedef struct ew_edge {
 
 /* A triangle between two of its rows. The planes that it has not got may lack behind it. */
 typedef struct ew_active {
-    uint32_t number;             /* for whoever keeps it, as `next`                          */
+    uint32_t number;             /* for whoever keeps it, as `next` and `seen`               */
     uint16_t next;
     uint16_t row, end, turn;     /* the next row to draw, and those of ew_corners           */
     uint8_t longest;             /* likewise                                                */
+    uint16_t seen;
     ew_snapped x[2], y[2];       /* the middle and the lowest corner                        */
     ew_edge edge[2];             /* left, right                                             */
     ew_triangle triangle;
 } ew_active;
+
+/* Columns of a triangle's next row: from <= x < to. 1/z of pixel x, uq1.31 times 2^(31 + lead), is
+ * w + x dw modulo 2^64, as a signed number. */
+typedef struct ew_active_span {
+    uint64_t w, dw;
+    uint16_t from, to;
+    uint16_t next; /* for whoever keeps it, as `part` */
+    uint8_t lead;  /* 0 to 24                        */
+    uint8_t part;
+} ew_active_span;
 
 /* Differences from corner 0, in one place for both kinds of set-up. */
 typedef struct ew_basis {

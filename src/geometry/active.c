@@ -3,28 +3,26 @@
 
 /* ---- places ---- */
 
-enum { PLACE_BYTES = 8 };
-
-static ew_kept *kept_at(const ew_picture_work *w, ew_place place)
-{
-    return (ew_kept *)(void *)(w->places + (size_t)place * PLACE_BYTES);
-}
-
 static void init_places(ew_picture_work *w, size_t bytes)
 {
-    const size_t places = bytes / PLACE_BYTES < EW_NO_PLACE ? bytes / PLACE_BYTES : EW_NO_PLACE - 1u;
+    const size_t places = bytes / EW_PLACE_BYTES < EW_NO_PLACE ? bytes / EW_PLACE_BYTES : EW_NO_PLACE - 1u;
     w->kept = w->gaps = EW_NO_PLACE;
     if (places == 0) return;
     w->gaps = 0;
-    kept_at(w, 0)->gap.places = (uint16_t)places;
-    kept_at(w, 0)->gap.next = EW_NO_PLACE;
+    ew_kept_at(w, 0)->gap.places = (uint16_t)places;
+    ew_kept_at(w, 0)->gap.next = EW_NO_PLACE;
 }
 
 void ew_active_init(ew_picture_work *w)
 {
     enum { SHARE = 8 }; /* of it for vertices: most of a slot for each triangle of 112 bytes */
     uint8_t *at = (uint8_t *)(w->entries + (w->entry_count + 1u) / 2u * 2u); /* aligned to 8 */
-    const size_t rest = (size_t)(w->end_of_memory - at);
+    size_t rest = (size_t)(w->end_of_memory - at);
+    if (EW_WITH_SPANS && w->picture->visibility == EW_DEPTH_SPANS) {
+        const size_t used = ew_row_init(w, at, rest);
+        at += used;
+        rest -= used;
+    }
     w->slots = (ew_slot *)(void *)at;
     w->slot_count = w->vertices;
     if (w->slot_count > rest / SHARE / sizeof *w->slots) w->slot_count = (uint32_t)(rest / SHARE / sizeof *w->slots);
@@ -41,8 +39,8 @@ void ew_active_init(ew_picture_work *w)
 /* The first gap that is large enough gives its end. */
 static ew_place take_places(ew_picture_work *w, uint16_t places)
 {
-    for (ew_place *at = &w->gaps; *at != EW_NO_PLACE; at = &kept_at(w, *at)->gap.next) {
-        ew_kept *gap = kept_at(w, *at);
+    for (ew_place *at = &w->gaps; *at != EW_NO_PLACE; at = &ew_kept_at(w, *at)->gap.next) {
+        ew_kept *gap = ew_kept_at(w, *at);
         if (gap->gap.places < places) continue;
         const ew_place taken = (ew_place)(*at + gap->gap.places - places);
         gap->gap.places = (uint16_t)(gap->gap.places - places);
@@ -55,19 +53,19 @@ static ew_place take_places(ew_picture_work *w, uint16_t places)
 /* Gaps stand in order, and no two touch. */
 static void give_places(ew_picture_work *w, ew_place place, uint16_t places)
 {
-    ew_kept *before = NULL, *gap = kept_at(w, place);
+    ew_kept *before = NULL, *gap = ew_kept_at(w, place);
     ew_place *at = &w->gaps;
     ew_place before_place = 0;
     while (*at != EW_NO_PLACE && *at < place) {
         before_place = *at;
-        before = kept_at(w, *at);
+        before = ew_kept_at(w, *at);
         at = &before->gap.next;
     }
     gap->gap.places = places;
     gap->gap.next = *at;
     *at = place;
     if (gap->gap.next == place + places) {
-        const ew_kept *after = kept_at(w, gap->gap.next);
+        const ew_kept *after = ew_kept_at(w, gap->gap.next);
         gap->gap.places = (uint16_t)(places + after->gap.places);
         gap->gap.next = after->gap.next;
     }
@@ -77,13 +75,13 @@ static void give_places(ew_picture_work *w, ew_place place, uint16_t places)
     }
 }
 
-static uint16_t places_of(const ew_triangle *t) { return (uint16_t)(ew_active_bytes(t) / PLACE_BYTES); }
+static uint16_t places_of(const ew_triangle *t) { return (uint16_t)(ew_active_bytes(t) / EW_PLACE_BYTES); }
 
 /* Takes the kept triangle out that *link leads to. */
 static void drop(ew_picture_work *w, ew_place *link)
 {
     const ew_place place = *link;
-    const ew_active *active = &kept_at(w, place)->active;
+    const ew_active *active = &ew_kept_at(w, place)->active;
     const uint16_t places = places_of(&active->triangle);
     *link = active->next;
     give_places(w, place, places);
@@ -96,9 +94,10 @@ static ew_place *keep(ew_picture_work *w, ew_place *link)
 {
     const ew_place place = take_places(w, places_of(&w->geometry->raster->work.triangle));
     if (place == EW_NO_PLACE) return NULL;
-    ew_active *active = &kept_at(w, place)->active;
+    ew_active *active = &ew_kept_at(w, place)->active;
     ew_raster_keep(w->geometry->raster, active);
     active->number = w->number;
+    active->seen = EW_NOT_SEEN;
     active->next = *link;
     *link = place;
     w->active++;
@@ -168,7 +167,8 @@ static EW_OWN_FRAME int go_to(ew_picture_work *w, uint32_t number)
 
 /* What becomes of a triangle in the band at hand: there is nothing to be drawn; it is kept, to be drawn next;
  * what the raster has set up is to be drawn, and that was all or the rest is late; the
- * triangles of a fan are to be drawn, one after the other, and are late, too. */
+ * triangles of a fan are to be drawn, one after the other, and are late, too. With EW_DEPTH_SPANS nothing
+ * is over before the whole row is known: even what ends on it is kept or late. */
 enum { DONE, KEPT, DRAW, DRAW_LATE, DRAW_FAN };
 
 static int begin(ew_picture_work *w)
@@ -212,12 +212,12 @@ static EW_OWN_FRAME int clipped(ew_picture_work *w, const uint16_t *index)
     for (int k = 0; k < 3; k++) w->geometry->clip_screen[k] = &w->screen[k];
     w->geometry->transform = w->at->transform;
     ew_clip_triangle(w->geometry, &w->at->mesh, index);
-    return keep_fan(w);
+    return DRAW_FAN;
 }
 
-/* Sets the triangle at hand up, with its corners in w->screen; kept ones stand at *kept_link then.
- * Returns one of the above or an error. */
-static EW_OWN_FRAME int start(ew_picture_work *w)
+/* Makes the triangle at hand ready, with its corners in w->screen. Returns DONE, DRAW for `begin` or DRAW_FAN for
+ * next_of_fan. */
+static EW_OWN_FRAME int make_ready(ew_picture_work *w)
 {
     const ew_object *object = w->at;
     const ew_mesh *mesh = &object->mesh;
@@ -232,9 +232,18 @@ static EW_OWN_FRAME int start(ew_picture_work *w)
         ew_corner_from(&v[k], &mesh->vertices[index[k]], &s[k], uv_unit);
         v[k].colour = mesh->colours ? mesh->colours[index[k]] : ew_white;
     }
-    const int result = begin(w);
+    return DRAW;
+}
+
+/* Sets the triangle at hand up; kept ones stand at *kept_link then. Returns one of the above or an
+ * error. */
+static EW_OWN_FRAME int start(ew_picture_work *w)
+{
+    int result = make_ready(w);
+    if (result == DRAW_FAN) return keep_fan(w);
+    if (result == DRAW) result = begin(w);
     if (result <= 0) return result;
-    if (ew_raster_begun_end(w->geometry->raster) <= w->bottom) return DRAW;
+    if (!w->row && ew_raster_begun_end(w->geometry->raster) <= w->bottom) return DRAW;
     return keep(w, w->kept_link) ? KEPT : DRAW_LATE;
 }
 
@@ -300,7 +309,7 @@ static inline int draw_kept(ew_picture_work *w, uint32_t number)
     ew_place *link = w->kept_link;
     ew_raster *raster = w->geometry->raster;
     while (*link != EW_NO_PLACE) {
-        ew_active *active = &kept_at(w, *link)->active;
+        ew_active *active = &ew_kept_at(w, *link)->active;
         if (active->number >= number) break;
         if (active->number >= w->behind) {
             const int error = go_to(w, active->number);
@@ -325,12 +334,15 @@ static EW_OWN_FRAME int start_next(ew_picture_work *w, uint32_t number, int is_l
     return result;
 }
 
+/* Back to the first object. */
+static void start_over(ew_picture_work *w) { w->object = w->first_triangle = w->first_vertex = w->behind = 0; }
+
 int ew_draw_band(ew_picture_work *w)
 {
     int result = EW_OK;
     w->kept_link = &w->kept;
     start_late(w);
-    w->object = w->first_triangle = w->first_vertex = w->behind = 0;
+    start_over(w);
     while (result >= 0) {
         const uint32_t late = number_of_late(w), next = number_of_next(w), number = late < next ? late : next;
         result = draw_kept(w, number);
@@ -346,3 +358,152 @@ int ew_draw_band(ew_picture_work *w)
     if (w->active > w->counts->most_active) w->counts->most_active = w->active;
     return result < 0 ? result : EW_OK;
 }
+
+#if EW_WITH_SPANS
+
+/* ---- a row of EW_DEPTH_SPANS ---- */
+
+/* Shows what was kept of triangles before `number`. */
+static void show_kept(ew_picture_work *w, uint32_t number)
+{
+    ew_place *link = w->kept_link;
+    uint32_t before = EW_NO_TRIANGLE;
+    unsigned part = 0;
+    while (*link != EW_NO_PLACE) {
+        ew_active *active = &ew_kept_at(w, *link)->active;
+        if (active->number >= number) break;
+        part = active->number == before ? part + 1u : 0;
+        before = active->number;
+        ew_show(w, active, *link, part);
+        link = &active->next;
+    }
+    w->kept_link = link;
+}
+
+/* Shows what was kept of triangles before the next that is not, and returns the number of that. */
+static EW_OWN_FRAME uint32_t show_until_next(ew_picture_work *w)
+{
+    const uint32_t late = number_of_late(w), next = number_of_next(w), number = late < next ? late : next;
+    show_kept(w, number);
+    return number;
+}
+
+/* Goes on with the triangle that was set up without room for it. */
+static ew_active *begun(ew_picture_work *w)
+{
+    ew_active *active = &w->row->late;
+    ew_raster_keep(w->geometry->raster, active);
+    active->number = w->number;
+    return active;
+}
+
+/* Shows one that is late, `how` as start has it. Returns EW_OK or an error. */
+static EW_OWN_FRAME int show_late(ew_picture_work *w, int how)
+{
+    unsigned part = 0;
+    if (how == DRAW_LATE) ew_show(w, begun(w), EW_NO_PLACE, 0);
+    if (how != DRAW_FAN) return EW_OK;
+    for (; (how = next_of_fan(w)) > 0; part++) ew_show(w, begun(w), EW_NO_PLACE, part);
+    return how;
+}
+
+static EW_OWN_FRAME void start_showing(ew_picture_work *w)
+{
+    w->kept_link = &w->kept;
+    start_late(w);
+    start_over(w);
+}
+
+static EW_OWN_FRAME void end_showing(ew_picture_work *w)
+{
+    merge_late(w);
+    if (w->active > w->counts->most_active) w->counts->most_active = w->active;
+}
+
+/* Small: the deepest calls lie below it. */
+int ew_show_spans(ew_picture_work *w)
+{
+    int result = EW_OK;
+    start_showing(w);
+    while (result >= 0) {
+        const uint32_t number = show_until_next(w);
+        if (number == EW_NO_TRIANGLE) break;
+        result = start_next(w, number, number == number_of_late(w));
+        if (result > 0) result = show_late(w, result);
+    }
+    end_showing(w);
+    return result < 0 ? result : EW_OK;
+}
+
+/* Draws what is seen of a late triangle, or of a part of one. */
+static void draw_begun(ew_picture_work *w, unsigned part)
+{
+    const ew_active *active = begun(w);
+    for (uint16_t *link = &w->row->late_first; *link != EW_NOT_SEEN;) {
+        ew_seen *s = &w->row->seen[*link];
+        if (s->number == w->number && s->span.part == part) {
+            ew_raster_draw_columns(w->geometry->raster, active, s->span.from, s->span.to);
+            ew_forget(w->row, link);
+        } else {
+            link = &s->span.next;
+        }
+    }
+}
+
+static int is_seen(const ew_row_work *row, uint32_t number)
+{
+    uint16_t i = row->late_first;
+    while (i != EW_NOT_SEEN && row->seen[i].number != number) i = row->seen[i].span.next;
+    return i != EW_NOT_SEEN;
+}
+
+int ew_draw_late(ew_picture_work *w)
+{
+    int result = EW_OK;
+    if (w->row->late_first == EW_NOT_SEEN) return EW_OK;
+    start_over(w);
+    for (uint32_t i = 0; i < w->late_count && result >= 0; i++) {
+        if (!is_seen(w->row, w->entries[i])) continue;
+        result = go_to(w, w->entries[i]);
+        if (result) break;
+        w->counts->again++;
+        for (int k = 0; k < 3; k++) fetch(w, k);
+        result = make_ready(w);
+        if (result == DRAW && (result = begin(w)) > 0) draw_begun(w, 0);
+        else if (result == DRAW_FAN) for (unsigned part = 0; (result = next_of_fan(w)) > 0; part++) draw_begun(w, part);
+    }
+    return result < 0 ? result : EW_OK;
+}
+
+int ew_draw_seen(ew_picture_work *w)
+{
+    ew_row_work *row = w->row;
+    start_over(w);
+    for (ew_place place = w->kept; place != EW_NO_PLACE;) {
+        ew_active *active = &ew_kept_at(w, place)->active;
+        place = active->next;
+        if (active->seen == EW_NOT_SEEN) continue;
+        if (active->number >= w->behind) {
+            const int error = go_to(w, active->number);
+            if (error) return error;
+        }
+        while (active->seen != EW_NOT_SEEN) {
+            const ew_active_span *span = &row->seen[active->seen].span;
+            ew_raster_draw_columns(w->geometry->raster, active, span->from, span->to);
+            ew_forget(row, &active->seen);
+        }
+    }
+    return EW_OK;
+}
+
+void ew_step_kept(ew_picture_work *w)
+{
+    for (ew_place *link = &w->kept; *link != EW_NO_PLACE;) {
+        ew_active *active = &ew_kept_at(w, *link)->active;
+        if (active->row == w->top) ew_active_step(active);
+        if (active->row < active->end) link = &active->next;
+        else drop(w, link);
+    }
+}
+
+#endif

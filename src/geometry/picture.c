@@ -9,8 +9,9 @@ enum { ALIGNMENT = 8 };
 /* What a picture needs, in the order in which it lies in memory. */
 typedef struct memory_plan {
     uint32_t stride, rows, bands;  /* rows of a band, and how many bands there are            */
-    uint32_t triangles, vertices;  /* to be linked and mapped, 0 where there is one band       */
-    uint32_t screen;               /* vertices to be kept while an object is drawn, likewise    */
+    uint32_t is_listed;            /* triangles are sorted: there are several bands, or EW_DEPTH_SPANS */
+    uint32_t triangles, vertices;  /* to be linked and mapped, 0 where nothing is listed       */
+    uint32_t screen;               /* vertices to be kept while an object is drawn, where it is not */
     uint32_t colour, depth;        /* bytes of a band                                         */
     uint32_t least;                /* with what alignment may take; below 2^28                 */
 } memory_plan;
@@ -20,7 +21,7 @@ static uint32_t aligned(uint32_t bytes) { return (bytes + ALIGNMENT - 1u) / ALIG
 static int is_valid(const ew_picture *p)
 {
     return p->width >= 1 && p->width <= EW_TARGET_MAX && p->height >= 1 && p->height <= EW_TARGET_MAX &&
-           p->format <= EW_TARGET_MONO && p->visibility <= EW_DEPTH_NONE && p->buffers >= 1 && p->buffers <= 2 &&
+           p->format <= EW_TARGET_MONO && p->visibility <= EW_DEPTH_SPANS && p->buffers >= 1 && p->buffers <= 2 &&
            p->rows >= 1 && p->rows <= p->height && p->first_row < p->end_row && p->end_row <= p->height &&
            p->scissor.x0 <= p->scissor.x1 && p->scissor.y0 <= p->scissor.y1 && p->scissor.x1 <= p->width &&
            p->scissor.y1 <= p->height && p->fog_far <= p->fog_near;
@@ -39,9 +40,9 @@ static int count_objects(memory_plan *plan, const ew_object *objects, uint32_t c
         if (objects[i].vertex_count >= UINT32_C(0xFFFFFF) - vertices) return 0;
         vertices += objects[i].vertex_count;
     }
-    plan->triangles = plan->bands > 1 ? triangles : 0;
-    plan->vertices = plan->bands > 1 ? vertices : 0;
-    plan->screen = plan->bands > 1 ? 0 : most;
+    plan->triangles = plan->is_listed ? triangles : 0;
+    plan->vertices = plan->is_listed ? vertices : 0;
+    plan->screen = plan->is_listed ? 0 : most;
     return 1;
 }
 
@@ -54,13 +55,14 @@ static int plan_init(memory_plan *plan, const ew_picture *picture, const ew_obje
     plan->stride = bits < 3 ? (picture->width + 7u) / 8u * 8u : picture->width; /* whole bytes */
     plan->rows = picture->rows < all ? picture->rows : all;
     plan->bands = (all + plan->rows - 1u) / plan->rows;
+    plan->is_listed = plan->bands > 1 || picture->visibility == EW_DEPTH_SPANS;
     if (!count_objects(plan, objects, count)) return 0;
     const uint32_t pixels = plan->stride * plan->rows; /* <= 2^24 */
     plan->colour = aligned((pixels << bits) / 8u);
     plan->depth = picture->visibility == EW_DEPTH_BUFFER ? aligned(pixels * 2u) : 0;
     plan->least = ALIGNMENT - 1u + aligned(sizeof(ew_picture_work)) + plan->colour * picture->buffers + plan->depth +
                   aligned(plan->screen * (uint32_t)sizeof(ew_screen_vertex)) + aligned(plan->triangles * 4u) +
-                  aligned(plan->vertices * 2u);
+                  aligned(plan->vertices * 2u) + (picture->visibility == EW_DEPTH_SPANS ? aligned((uint32_t)EW_ROW_LEAST) : 0);
     return sizeof(size_t) > 2 || plan->least <= UINT16_MAX;
 }
 
@@ -72,14 +74,15 @@ size_t ew_picture_least(const ew_picture *picture, const ew_object *objects, uin
 
 size_t ew_picture_bytes(const ew_picture *picture, const ew_object *objects, uint32_t count, uint32_t active)
 {
-    enum { OF_ACTIVE = 112, AND = 448 };
+    enum { AND = 448 };
+    const uint32_t of_active = picture->visibility == EW_DEPTH_SPANS ? 256 : 112;
     memory_plan plan;
     if (!plan_init(&plan, picture, objects, count)) return 0;
-    if (plan.bands == 1) return (size_t)plan.least;
+    if (!plan.is_listed) return (size_t)plan.least;
     const uint32_t most = SIZE_MAX < INT32_MAX ? (uint32_t)SIZE_MAX : INT32_MAX;
     if (plan.least > most - AND) return (size_t)plan.least;
-    const uint32_t fit = (most - AND - plan.least) / OF_ACTIVE;
-    const uint32_t bytes = plan.least + AND + (active < fit ? active : fit) * OF_ACTIVE; /* <= most */
+    const uint32_t fit = (most - AND - plan.least) / of_active;
+    const uint32_t bytes = plan.least + AND + (active < fit ? active : fit) * of_active; /* <= most */
     return (size_t)bytes;
 }
 
@@ -96,6 +99,14 @@ static ew_picture_work *work_init(const memory_plan *plan, const ew_picture *pic
     uint8_t *at = (uint8_t *)w + aligned(sizeof *w), *const end = (uint8_t *)memory + bytes;
     w->picture = picture;
     w->rows = plan->rows, w->bands = plan->bands, w->stride = plan->stride;
+    w->bands_at_once = 1;
+    if (picture->visibility == EW_DEPTH_SPANS) { /* row by row, whatever is handed over */
+        w->bands_at_once = w->rows;
+        w->bands = (uint32_t)(picture->end_row - picture->first_row);
+        w->rows = 1;
+    }
+    w->is_listed = (uint8_t)plan->is_listed;
+    w->row = NULL;
     w->colour = at;
     w->colour_bytes = plan->colour;
     at += plan->colour * picture->buffers;
@@ -109,7 +120,7 @@ static ew_picture_work *work_init(const memory_plan *plan, const ew_picture *pic
     w->entries = (uint32_t *)(void *)at;
     w->rest = at + aligned(plan->triangles * 4u);
     w->end_of_memory = end;
-    const ew_picture_counts none = { 0, 0, 0, 0 };
+    const ew_picture_counts none = { 0, 0, 0, 0, 0, 0 };
     w->own_counts = none;
     w->counts = &w->own_counts;
     w->entry_count = w->next = w->late_count = w->active = 0;
@@ -280,39 +291,63 @@ static EW_OWN_FRAME int next_mesh(ew_picture_work *w, int *error)
     return 1;
 }
 
-/* Goes to the band at hand and clears it; the scissor is what of the picture's lies in it. Returns
- * whether that is anything. */
-static EW_OWN_FRAME int start_band(ew_picture_work *w)
+/* The first row below `count` bands from the one at hand on, which begins on `row`. */
+static int32_t end_of_bands(const ew_picture_work *w, int32_t row, uint32_t count)
+{
+    const int32_t rows = (int32_t)(w->rows * count), left = w->picture->end_row - row;
+    return rows < left ? row + rows : w->picture->end_row;
+}
+
+/* Goes to the memory of the bands that begin on `row`, and clears it. */
+static EW_OWN_FRAME void start_colours(ew_picture_work *w, int32_t row)
 {
     ew_raster *raster = w->geometry->raster;
     const ew_picture *p = w->picture;
-    const int32_t row = p->first_row + (int32_t)(w->band * w->rows), left = p->end_row - row;
-    const int32_t end = (int32_t)w->rows < left ? row + (int32_t)w->rows : p->end_row;
-    uint8_t *colour = w->colour + (p->buffers > 1 && w->band & 1u ? w->colour_bytes : 0);
-    ew_raster_set_rows(raster, colour, w->depth, (uint16_t)row, (uint16_t)(end - row));
-    ew_rect rect = { 0, (uint16_t)row, p->width, (uint16_t)end };
+    const int32_t end = end_of_bands(w, row, w->bands_at_once);
+    const int second = p->buffers > 1 && w->band / w->bands_at_once & 1u;
+    ew_raster_set_rows(raster, w->colour + (second ? w->colour_bytes : 0), w->depth, (uint16_t)row, (uint16_t)(end - row));
+    const ew_rect rect = { 0, (uint16_t)row, p->width, (uint16_t)end };
     ew_raster_set_scissor(raster, &rect);
     ew_raster_clear(raster, p->background);
+}
+
+/* Goes to the band at hand; the scissor is what of the picture's lies in it. Returns whether that is
+ * anything. */
+static EW_OWN_FRAME int start_band(ew_picture_work *w)
+{
+    const ew_picture *p = w->picture;
+    const int32_t row = p->first_row + (int32_t)(w->band * w->rows), end = end_of_bands(w, row, 1);
+    if (w->band % w->bands_at_once == 0) start_colours(w, row);
     w->top = row > w->first ? row : w->first;
     w->bottom = end < w->end ? end : w->end;
     if (w->top >= w->bottom) return 0;
-    rect.x0 = p->scissor.x0, rect.x1 = p->scissor.x1;
-    rect.y0 = (uint16_t)w->top, rect.y1 = (uint16_t)w->bottom;
-    ew_raster_set_scissor(raster, &rect);
+    const ew_rect rect = { p->scissor.x0, (uint16_t)w->top, p->scissor.x1, (uint16_t)w->bottom };
+    ew_raster_set_scissor(w->geometry->raster, &rect);
     return 1;
+}
+
+/* Whether what is behind the raster's material is never seen, and what is in front of it always is. */
+static int is_opaque(const ew_raster *raster)
+{
+    const ew_material *m = &raster->material;
+    const int cuts = m->texture ? EW_COLOUR_KEY | EW_ALPHA_MASK : 0;
+    return !m->blend && !(m->flags & (cuts | EW_NO_DEPTH_TEST | EW_NO_DEPTH_WRITE));
 }
 
 static EW_OWN_FRAME int init_raster(const ew_picture_work *w)
 {
     const ew_picture *p = w->picture;
     ew_raster *raster = w->geometry->raster;
-    const ew_target target = { .colour = w->colour, .depth = w->depth, .width = p->width, .height = (uint16_t)w->rows,
+    const ew_target target = { .colour = w->colour, .depth = w->depth, .width = p->width, .height = (uint16_t)(w->rows * w->bands_at_once),
                                .stride = (uint16_t)w->stride, .format = p->format, .dither = p->dither,
                                .first_row = p->first_row };
     int error = ew_raster_init(raster, &target);
     if (!error && p->cost) error = ew_raster_set_cost(raster, p->cost);
     if (!error && p->fog_near) error = ew_raster_set_fog(raster, p->fog_colour, p->fog_near, p->fog_far);
-    for (uint32_t i = 0; i < w->count && !error; i++) error = ew_raster_set_material(raster, &w->objects[i].material);
+    for (uint32_t i = 0; i < w->count && !error; i++) {
+        error = ew_raster_set_material(raster, &w->objects[i].material);
+        if (!error && p->visibility == EW_DEPTH_SPANS && !is_opaque(raster)) error = EW_ERR_UNSUPPORTED;
+    }
     return error;
 }
 
@@ -322,6 +357,7 @@ static EW_OWN_FRAME int prepare(const ew_picture *picture, const ew_object *obje
 {
     memory_plan plan;
     if (!plan_init(&plan, picture, objects, count)) return EW_ERR_ARGUMENT;
+    if (!EW_WITH_SPANS && picture->visibility == EW_DEPTH_SPANS) return EW_ERR_UNSUPPORTED;
     if (bytes < plan.least) return EW_ERR_ROOM;
     ew_picture_work *w = work_init(&plan, picture, memory, bytes);
     w->objects = objects;
@@ -334,17 +370,25 @@ static EW_OWN_FRAME int prepare(const ew_picture *picture, const ew_object *obje
     return init_raster(w);
 }
 
+/* Hands over the band at hand with those before it, if it is the last of these. */
+static EW_OWN_FRAME void hand_over(const ew_picture_work *w)
+{
+    const uint32_t behind = w->band + 1u;
+    if (behind == w->bands || behind % w->bands_at_once == 0) w->picture->band(w->picture->user, &w->geometry->raster->target);
+}
+
 /* One band after the other, in the caller's frame: below this lie the deepest calls. */
 static inline int draw(ew_picture_work *w)
 {
     int error = EW_OK;
-    if (w->bands > 1) sort(w);
+    if (w->is_listed) sort(w);
     for (; w->band < w->bands && error >= 0; w->band++) {
         if (start_band(w)) {
-            if (w->bands > 1) error = ew_draw_band(w);
+            if (EW_WITH_SPANS && w->row) error = ew_draw_visible(w);
+            else if (w->is_listed) error = ew_draw_band(w);
             else while (error >= 0 && next_mesh(w, &error)) error = (int)ew_draw_triangles(w->geometry, &w->geometry->scene.mesh);
         }
-        if (error >= 0) w->picture->band(w->picture->user, &w->geometry->raster->target);
+        if (error >= 0) hand_over(w);
     }
     return error < 0 ? error : EW_OK;
 }

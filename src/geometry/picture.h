@@ -21,6 +21,7 @@ enum { EW_NUMBER_BITS = 20 };
 /* A place among the kept ones: 8 bytes each, or none. */
 typedef uint16_t ew_place;
 #define EW_NO_PLACE UINT16_C(0xFFFF)
+enum { EW_PLACE_BYTES = 8 };
 
 /* What stands in a place: a kept triangle, or a gap with the next one behind it. */
 typedef union ew_kept {
@@ -39,13 +40,41 @@ typedef struct ew_slot {
 
 enum { EW_BATCH = 8 };
 
+/* ---- visible.c: EW_DEPTH_SPANS ---- */
+
+/* Columns of a row in which a triangle is seen, as far as is known yet. `span.next` leads to the right;
+ * among those that are drawn to the triangle's next; else to the next unused one. `span.part` counts
+ * the triangles of a clipped one's fan. */
+typedef struct ew_seen {
+    ew_active_span span;
+    uint32_t number; /* of the triangle                                                     */
+    ew_place place;  /* where it is kept, or none: it is late                                */
+} ew_seen;
+#define EW_NOT_SEEN UINT16_C(0xFFFF)
+
+/* The row at hand. Where there is no room for all that is seen on it, it is cut into sections, one
+ * after the other. What is seen up to a section's end may go on behind it, and waits. */
+typedef struct ew_row_work {
+    ew_active late;   /* one that is not kept                                                */
+    ew_seen now;      /* what is held against the others                                     */
+    uint16_t from, to; /* columns of the section                                             */
+    uint16_t first;   /* the leftmost that is seen                                           */
+    uint16_t hint;    /* one to the left of where `now` began last, or none                  */
+    uint16_t last;    /* the rightmost of `now`, or none                                     */
+    uint16_t late_first; /* of those that are drawn and not kept                              */
+    uint16_t unused, unused_count, count;
+    ew_seen seen[];   /* `count` of them                                                   */
+} ew_row_work;
+
 typedef struct ew_picture_work {
     const ew_picture *picture;
     const ew_object *objects;
     uint32_t count;
     ew_geometry *geometry;
     ew_picture_counts *counts, own_counts;
-    uint32_t rows, bands, stride;
+    uint32_t rows, bands, stride; /* of a band, EW_DEPTH_SPANS: 1                            */
+    uint32_t bands_at_once; /* that are handed over together                                */
+    uint8_t is_listed;    /* whether triangles are sorted into bands                         */
     uint32_t band;        /* the one at hand                                                */
     int32_t first, end;   /* rows that triangles are drawn in                               */
     int32_t top, bottom;  /* rows of the band at hand among them                            */
@@ -57,6 +86,7 @@ typedef struct ew_picture_work {
     uint32_t vertices;
     uint32_t *entries;
     uint8_t *rest, *end_of_memory; /* what lies behind all of this                            */
+    ew_row_work *row;     /* NULL but for EW_DEPTH_SPANS                                     */
     ew_slot *slots;
     uint32_t slot_count, hand; /* hand: where a slot was taken last                         */
     uint8_t *places;      /* multiples of 8 bytes                                           */
@@ -91,6 +121,11 @@ static inline int ew_is_hidden(const ew_screen_vertex *a, const ew_screen_vertex
     return all || (!both_sides && !ew_faces_the_eye(a, b, c));
 }
 
+static inline ew_kept *ew_kept_at(const ew_picture_work *w, ew_place place)
+{
+    return (ew_kept *)(void *)(w->places + (size_t)place * EW_PLACE_BYTES);
+}
+
 /* ---- active.c ---- */
 
 /* Divides what memory the list leaves. */
@@ -98,5 +133,37 @@ void ew_active_init(ew_picture_work *w);
 
 /* Draws what lies in the band at hand. Returns EW_OK or an error. */
 int ew_draw_band(ew_picture_work *w);
+
+/* The same with EW_DEPTH_SPANS, where a band is a row. */
+int ew_draw_visible(ew_picture_work *w);
+
+/* What ew_draw_visible asks of active.c: shows all spans of the row to visible.c, once for each section;
+ * draws what is seen of kept ones, and of late ones; takes out what ended on this row. */
+int ew_show_spans(ew_picture_work *w);
+int ew_draw_seen(ew_picture_work *w);
+int ew_draw_late(ew_picture_work *w);
+void ew_step_kept(ew_picture_work *w);
+
+/* ---- visible.c ---- */
+
+/* What w->row takes at least, in bytes. */
+enum { EW_SEEN_LEAST = 8 };
+#define EW_ROW_LEAST (sizeof(ew_row_work) + EW_SEEN_LEAST * sizeof(ew_seen))
+
+/* Makes w->row, in a share of that memory. Returns how much it takes. */
+size_t ew_row_init(ew_picture_work *w, void *memory, size_t bytes);
+
+/* Holds a triangle's next row against what was seen so far: where it is nearer, it is seen. */
+void ew_show(ew_picture_work *w, ew_active *active, ew_place place, unsigned part);
+
+/* Takes out of a list what *link leads to. */
+static inline void ew_forget(ew_row_work *row, uint16_t *link)
+{
+    const uint16_t i = *link;
+    *link = row->seen[i].span.next;
+    row->seen[i].span.next = row->unused;
+    row->unused = i;
+    row->unused_count++;
+}
 
 #endif

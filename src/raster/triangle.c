@@ -246,3 +246,48 @@ int ew_raster_draw_active(ew_raster *raster, ew_active *active)
     if (row < turn && turn < end) reached = draw_part(raster, active, turn);
     return draw_part(raster, active, end) | reached;
 }
+
+/* ---- some columns at a time ---- */
+
+int ew_raster_find_span(const ew_raster *raster, ew_active *active, ew_active_span *span)
+{
+    const ew_triangle *t = &active->triangle;
+    if (active->row != raster->scissor.y0) return 0;
+    if (active->row == active->turn) start_lowest_edge(active);
+    const int32_t from = larger(active->edge[0].x, raster->scissor.x0), to = smaller(active->edge[1].x, raster->scissor.x1);
+    if (from >= to) return 0;
+    span->from = (uint16_t)from, span->to = (uint16_t)to;
+    span->lead = t->w_lead;
+    if (t->is_wide) {
+        span->dw = t->plane.wide[EW_PLANE_W].dx;
+        span->w = t->plane.wide[EW_PLANE_W].row - ew_wrap_mul64(span->dw, t->column);
+    } else {
+        const uint32_t dw = t->plane.narrow[EW_PLANE_W].dx;
+        span->dw = (uint64_t)dw << 32;
+        span->w = (uint64_t)(t->plane.narrow[EW_PLANE_W].row - dw * t->column) << 32;
+    }
+    return 1;
+}
+
+void ew_raster_draw_columns(ew_raster *raster, const ew_active *active, uint16_t from, uint16_t to)
+{
+    EW_ASSERT(active->triangle.walk == WALK_ANY); /* all others need depth */
+    const ew_edge upright = { .remainder = -1, .dy = 1 };
+    ew_edge *edge = raster->work.edge;
+    copy_to_work(raster, active);
+    edge[0] = edge[1] = upright;
+    edge[0].x = from, edge[1].x = to;
+    ew_rows_of_any(raster, active->row, active->row + 1);
+}
+
+void ew_active_step(ew_active *active)
+{
+    ew_triangle *t = &active->triangle;
+    for (int i = 0; i <= t->attributes; i++) {
+        if (t->is_wide) t->plane.wide[i].row += t->plane.wide[i].dy;
+        else t->plane.narrow[i].row += t->plane.narrow[i].dy;
+    }
+    ew_edge_step(&active->edge[0]);
+    ew_edge_step(&active->edge[1]);
+    active->row++;
+}

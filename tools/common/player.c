@@ -21,6 +21,7 @@ struct ew_player {
     uint32_t time_ms;
     int32_t drawn;
     unsigned rows, active; /* of bands, 0: none */
+    ew_visibility visibility;
     ew_object *objects;
     uint8_t *memory;
     size_t memory_bytes;
@@ -132,11 +133,12 @@ static int orbit(ew_player *p, double angle)
     return error;
 }
 
-int ew_player_use_bands(ew_player *p, unsigned rows, unsigned active)
+int ew_player_use_bands(ew_player *p, unsigned rows, unsigned active, ew_visibility visibility)
 {
     const uint32_t count = ew_scene_object_count(&p->scene);
     p->rows = rows < p->target.height ? rows : p->target.height;
     p->active = active;
+    p->visibility = visibility;
     free(p->objects);
     p->objects = calloc(count ? count : 1, sizeof *p->objects);
     return p->objects ? 0 : complain(p, "cannot draw in bands", strerror(ENOMEM));
@@ -148,7 +150,7 @@ static void take_band(void *user, const ew_target *band)
     const ew_player *p = user;
     const size_t at = (size_t)band->first_row * p->target.stride, bytes = (size_t)band->height * band->stride * sizeof(uint16_t);
     memcpy((uint16_t *)p->target.colour + at, band->colour, bytes);
-    memcpy(p->target.depth + at, band->depth, bytes);
+    if (band->depth) memcpy(p->target.depth + at, band->depth, bytes);
 }
 
 static int draw_in_bands(ew_player *p, const ew_viewport *whole)
@@ -156,7 +158,7 @@ static int draw_in_bands(ew_player *p, const ew_viewport *whole)
     const uint16_t width = p->target.width, height = p->target.height;
     const ew_picture picture = { .width = width, .height = height, .buffers = 1, .rows = (uint16_t)p->rows, .end_row = height,
                                  .background = EW_PLAYER_BACKGROUND, .scissor = { 0, 0, width, height },
-                                 .band = take_band, .user = p };
+                                 .visibility = (uint8_t)p->visibility, .band = take_band, .user = p };
     const uint32_t count = ew_scene_object_count(&p->scene);
     int error = ew_scene_objects(&p->scene, &p->camera, p->world, whole, &p->geometry, p->objects);
     if (error) return error;

@@ -15,8 +15,8 @@ ew_player *ew_player_open(const char *tool, const char *path, unsigned width, un
 void ew_player_close(ew_player *player);
 
 /* Draws from now on in bands of that many rows, in as little memory as that takes with `active`
- * triangles reaching from one band into the next; 0: at once. 0 or -1. */
-int ew_player_use_bands(ew_player *player, unsigned rows, unsigned active);
+ * triangles reaching from one band into the next. 0 or -1. */
+int ew_player_use_bands(ew_player *player, unsigned rows, unsigned active, ew_visibility visibility);
 
 /* Draws frame i of n: where the scene has an animation its time is i/fps seconds (fps = 0
  * counts as 30), else the camera goes round the scene once in n frames. 0 or -1. */

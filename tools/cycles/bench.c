@@ -184,8 +184,8 @@ static int run_mode(const bench_scene *s, const bench_mode *m)
 {
     const ew_texture texture = { .texels = bench_texture, .width = 256, .height = 256 };
     const ew_material material = { .texture = &texture, .tolerance = BENCH_MODE_TOLERANCE, .rung = EW_RUNG_AUTO };
-    const ew_picture p = { .width = W, .height = H, .rows = m->rows, .buffers = 1, .end_row = H, .background = BACKGROUND,
-                           .scissor = { 0, 0, W, H }, .band = hash_band };
+    const ew_picture p = { .width = W, .height = H, .rows = m->rows, .visibility = m->visibility, .buffers = 1, .end_row = H,
+                           .background = BACKGROUND, .scissor = { 0, 0, W, H }, .band = hash_band };
     picture = p;
     mode = m;
     ew_geometry_init(&geometry, &raster);

@@ -3,7 +3,7 @@
 #ifndef EW_CYCLES_CASES_H
 #define EW_CYCLES_CASES_H
 
-#include "edgewalk/raster.h"
+#include "edgewalk/picture.h"
 
 /* By which formula of docs/error-bound.md a method's displacement is known beforehand. */
 typedef enum bench_bound {
@@ -43,10 +43,13 @@ enum { BENCH_TOLERANCES = sizeof bench_tolerances / sizeof *bench_tolerances };
 typedef struct bench_mode {
     const char *name;
     uint16_t rows; /* of a band */
+    uint8_t visibility;
 } bench_mode;
 
 static const bench_mode bench_modes[] = {
-    { "at-once", 240 }, { "bands-32", 32 }, { "bands-16", 16 }, { "bands-8", 8 }, { "bands-4", 4 }, { "line", 1 },
+    { "at-once", 240, EW_DEPTH_BUFFER }, { "bands-32", 32, EW_DEPTH_BUFFER }, { "bands-16", 16, EW_DEPTH_BUFFER },
+    { "bands-8", 8, EW_DEPTH_BUFFER },   { "bands-4", 4, EW_DEPTH_BUFFER },   { "line", 1, EW_DEPTH_BUFFER },
+    { "spans", 1, EW_DEPTH_SPANS },
 };
 enum { BENCH_MODES = sizeof bench_modes / sizeof *bench_modes, BENCH_MODE_TOLERANCE = 4 };
 /* Fills that are counted besides, on the rung that is chosen for 1/4 px: every loop of

@@ -33,7 +33,7 @@ Case = namedtuple("Case", "scene method tolerance fragments")
 # pictures in bands a Memory.
 Count = namedtuple("Count", "instructions cycles picture memory")
 Memory = namedtuple("Memory", "bytes objects_bytes active set_up again transformed triangles vertices")
-MODES = {"at-once": 240, "bands-32": 32, "bands-16": 16, "bands-8": 8, "bands-4": 4, "line": 1}  # rows of a band
+MODES = {"at-once": 240, "bands-32": 32, "bands-16": 16, "bands-8": 8, "bands-4": 4, "line": 1, "spans": 1}  # rows of a band
 
 
 class Failed(Exception):
@@ -177,7 +177,7 @@ def memory_rows(cases, counts):
                 continue
             m, goal, notes = c.memory, goal_bytes(case.method, c.memory), []
             if goal == "na":
-                notes.append("goal: none for this height")
+                notes.append("goal: none for this mode")
             elif case.method == "bands-8":
                 notes.append("goal: without the 4 bytes for each triangle-band reference")
             if not c.cycles:

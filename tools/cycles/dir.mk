@@ -57,6 +57,19 @@ $(foreach t,$(WORK_TARGETS),$(eval $(call work_target,$(t))))
 $(C)/work-list: tools/cycles/work.c $(CYCLES_DEPS) $(C)/data-host.o
 	@echo "CC $@"
 	@$(call bench_cc,host) -DEW_TRACE=1 -Iinclude -Itools/cycles -o $@ $(filter-out tools/cycles/bench.c,$(filter %.c %.o,$^))
+# visibility-TARGET: three ways to find what is seen, in as much memory
+VISIBILITY_TARGETS := m3
+define visibility_target
+$(C)/visibility-$(1): tools/cycles/visibility.c $(CYCLES_DEPS) $(board_$(1)) $(wildcard $(BOARD)/*.ld $(BOARD)/*.h)
+	@mkdir -p $$(@D); echo "CC $$@"
+	@$$(call bench_cc,$(1)) -DEW_RECIP_BITS=$(COUNT_BITS) -Iinclude -o $$@ \
+	  $$(filter-out tools/cycles/bench.c,$$(filter %.c %.S %.o,$$^)) $$(call work_link,$(1))
+endef
+$(foreach t,$(VISIBILITY_TARGETS),$(eval $(call visibility_target,$(t))))
+$(C)/visibility-list: tools/cycles/visibility.c $(CYCLES_DEPS)
+	@mkdir -p $(@D); echo "CC $@"
+	@$(call bench_cc,host) -Iinclude -o $@ $(filter-out tools/cycles/bench.c,$(filter %.c,$^))
+visibility_images = $(C)/visibility-list $(addprefix $(C)/visibility-,$(filter $(VISIBILITY_TARGETS),$(COUNT_TARGETS)))
 work_images = $(C)/work-list $(addprefix $(C)/work-,$(filter $(WORK_TARGETS),$(COUNT_TARGETS)))
 
 bench_images = $(C)/list $(C)/count.so $(foreach b,$(1),$(foreach t,$(COUNT_TARGETS),$(C)/$(b)/bench-$(t)))

@@ -1,4 +1,4 @@
-/* What bench.c and work.c share: hashes of pictures, and the host's counting of fragments. */
+/* What bench.c, work.c and visibility.c share: hashes of pictures, and the host's counting of fragments. */
 #ifndef EW_CYCLES_DRAWN_H
 #define EW_CYCLES_DRAWN_H
 

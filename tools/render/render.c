@@ -19,6 +19,7 @@ struct options {
     const char *output;
     int animate;
     unsigned rows, active;
+    ew_visibility visibility;
 };
 
 static const struct argp_option option_table[] = {
@@ -26,7 +27,10 @@ static const struct argp_option option_table[] = {
                                 "frame-0000.png, frame-0001.png ...", 0 },
     { "animation", 'a', NULL, 0, "Write all frames into the one FILE, as an animated PNG", 0 },
     { "rows", 'r', "N", 0, "Draw in bands of N rows, 1 is line by line: the same picture in less memory", 0 },
-    { "active", 'A', "N", 0, "With --rows: memory for N triangles that reach from band to band (64)", 0 },
+    { "active", 'A', "N", 0, "With --rows or --visibility: memory for N triangles that reach from band to band (64)", 0 },
+    { "visibility", 'v', "HOW", 0, "What is seen is found by depth, a buffer of it (the default); by spans, compared where they "
+                                   "begin and end, for scenes that are opaque; or by none: what is drawn later covers what was "
+                                   "drawn before", 0 },
     { 0 }
 };
 
@@ -42,6 +46,17 @@ static unsigned number(struct argp_state *state, const char *option, const char 
     return (unsigned)n;
 }
 
+static const char *const visibilities[] = { "depth", "none", "spans" }; /* as in ew_visibility */
+
+static ew_visibility visibility(struct argp_state *state, const char *text)
+{
+    for (int i = EW_DEPTH_BUFFER; i <= EW_DEPTH_SPANS; i++) {
+        if (strcmp(text, visibilities[i]) == 0) return (ew_visibility)i;
+    }
+    argp_error(state, "--visibility: '%s' is none of depth, none, spans", text);
+    return EW_DEPTH_BUFFER;
+}
+
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
     struct options *o = state->input;
@@ -51,6 +66,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case 'a': o->animate = 1; break;
     case 'r': o->rows = number(state, "rows", arg, 1, 4096); break;
     case 'A': o->active = number(state, "active", arg, 0, 1000000); break;
+    case 'v': o->visibility = visibility(state, arg); break;
     default: return ARGP_ERR_UNKNOWN;
     }
     return 0;
@@ -99,7 +115,7 @@ static int render(const struct options *o, ew_player *player)
 
 int main(int argc, char **argv)
 {
-    struct options o = { EW_PICTURE_DEFAULTS, "frame.png", 0, 0, 64 };
+    struct options o = { EW_PICTURE_DEFAULTS, "frame.png", 0, 0, 64, EW_DEPTH_BUFFER };
     const struct argp_child children[] = { { &ew_picture_argp, 0, NULL, 0 }, { 0 } };
     const struct argp argp = { option_table, parse, NULL,
                                "Draws a baked scene with the fixed-point core into PNG files. A scene with an "
@@ -112,12 +128,15 @@ int main(int argc, char **argv)
 
     ew_player *player = ew_player_open(tool, o.picture.scene, o.picture.width, o.picture.height);
     if (!player) return 1;
-    int failed = (o.rows && ew_player_use_bands(player, o.rows, o.active)) || render(&o, player);
+    if (o.visibility && !o.rows) o.rows = o.picture.height;
+    int failed = (o.rows && ew_player_use_bands(player, o.rows, o.active, o.visibility)) || render(&o, player);
     if (!failed && o.rows) {
         ew_picture_counts c;
         const size_t bytes = ew_player_memory(player, &c);
-        printf("%s: bands of %u rows in %zu bytes, %u triangles active at most, %u of %u set-ups for want of room\n", o.output,
+        printf("%s: bands of %u rows in %zu bytes, %u triangles active at most, %u of %u set-ups for want of room", o.output,
                o.rows, bytes, (unsigned)c.most_active, (unsigned)c.again, (unsigned)c.set_up);
+        if (o.visibility == EW_DEPTH_SPANS) printf(", %u crossings, %u sections", (unsigned)c.crossings, (unsigned)c.sections);
+        printf("\n");
     } else if (!failed) {
         const ew_picture_options *p = &o.picture;
         printf("%s: %u frame%s of %ux%u, %d triangles in the last\n", o.output, p->frames, p->frames == 1 ? "" : "s",

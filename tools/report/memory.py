@@ -5,7 +5,7 @@ import count
 import work
 
 COLOURS = ["#1b6ca8", "#7b3fa0", "#2a9d4a", "#d98a00", "#c8102e", "#0a9396", "#8d6e63", "#5c6bc0"]
-POINTS = {"at-once": 5, "line": 9}  # a square, a triangle; bands are dots
+POINTS = {"at-once": 5, "line": 9, "spans": 13}  # a square, a triangle, a diamond; bands are dots
 SPEEDS = {"instructions": "million instructions", "cycles_typical": "million modelled cycles"}
 
 
@@ -34,9 +34,9 @@ def panel(script, name, title, speed, scenes):
     for i, (scene, own) in enumerate(scenes.items()):
         script += [f"$m{i} << EOD", *(f"{x / 1024:.6g} {y:.6g} {POINTS.get(mode, 7)}" for x, y, mode in own), "EOD"]
         colour = COLOURS[i % len(COLOURS)]
-        plots += [f"$m{i} using 1:2 with lines lw 2 lc rgb '{colour}' title '{scene}'",
+        plots += [f"$m{i} using 1:($3 == {POINTS['spans']} ? 1/0 : $2) with lines lw 2 lc rgb '{colour}' title '{scene}'",
                   f"$m{i} using 1:2:3 with points pt variable ps 0.9 lc rgb '{colour}' notitle"]
-    plots += [f"1/0 with points pt {pt} ps 0.9 lc rgb '#555555' title '{mode}'" for mode, pt in (("at once", 5), ("in bands", 7), ("line by line", 9))]
+    plots += [f"1/0 with points pt {pt} ps 0.9 lc rgb '#555555' title '{mode}'" for mode, pt in (("at once", 5), ("in bands", 7), ("line by line", 9), ("by spans", 13))]
     script += ["reset", "set grid lt 1 lc rgb '#e4e4e4'", "set key below samplen 1.5", "set border 3", "set tics nomirror", "set bmargin 7.5",
                "set logscale xy", f"set title '{title}'", "set xlabel 'RAM beside scene and objects, KiB'", f"set ylabel '{SPEEDS[speed]}'",
                f"set xtics ({', '.join(f'{v:g}' for v in ticks([x / 1024 for x, _, _ in points]))})",

@@ -7,6 +7,7 @@ import charts
 import memory
 import model
 import tables
+import visibility
 
 SHOWN_TOLERANCE = "0.25"
 PICTURES = [("reference", "what the referee draws in double precision"), ("ours", "what the library draws"),
@@ -207,7 +208,7 @@ def memory_section(rows, names):
               f"{row['instructions']:,}", f"{row['of_at_once']}", str(row["active"]), str(row["set_up_again"])] for row in shown]
     more = "".join(f"<details><summary>{text} against RAM</summary><div class='grid'>{charts_of(of_speed)}</div></details>"
                    for text, of_speed in list(zip(memory.SPEEDS.values(), names.values()))[:1] if names["cycles_typical"])
-    return f"""<p>One picture of 320 x 240 pixels, drawn at once, in bands of 32, 16, 8 and 4 rows, and line by line: the same bit for bit.
+    return f"""<p>One picture of 320 x 240 pixels, drawn at once, in bands of 32, 16, 8 and 4 rows, and line by line: the same bit for bit; and by spans, without a depth buffer.
 RAM is what it takes beside the scene and its objects, colour and depth buffers included; with less of it, triangles that reach over
 several bands are kept or set up again. Automatic choice at 1/4 pixel; the clear is counted. Each line is a scene, its right end the
 picture at once, its left end line by line. <a href="memory.csv">memory.csv</a></p>
@@ -313,7 +314,7 @@ def write(out, rows, auto, names, differing, bits, worked, in_memory, versions):
 <p>edgewalk is a fixed-point 3D rasterizer for microcontrollers that is told how much error a scene can bear and does no more work
 than that. This page shows what each way of drawing a texture costs on six processors, how far from the truth it is, and what a picture costs in <a href="#memory">less and less RAM</a>.</p>
 <nav><a href="#cost">Cost</a> <a href="#accuracy">Accuracy</a> <a href="#auto">The automatic choice</a> <a href="#work">Cost against work</a>
-<a href="#size">Flash and stack</a> <a href="#stability">Where methods fail</a>
+<a href="#visibility">What hides what</a> <a href="#size">Flash and stack</a> <a href="#stability">Where methods fail</a>
 {" ".join(f'<a href="#scene-{scene}">Scene {scene}</a>' for scene in scenes)} <a href="#how">How it was measured</a></nav>
 
 {first_sight(scenes, names)}
@@ -344,6 +345,9 @@ table sizes; <a href="auto.csv">auto.csv</a> names both for every case.</p>
 
 <h2 id="work">Cost against work</h2>
 {work_section(worked[0], worked[1], worked[4])}
+
+<h2 id="visibility">What hides what</h2>
+{visibility.section(out, table, charts_of)}
 
 <h2 id="size">Flash and stack</h2>
 {size_section(worked[2], worked[3], worked[5])}

@@ -20,6 +20,7 @@ import count
 import memory
 import page
 import tables
+import visibility
 import work
 
 
@@ -104,6 +105,7 @@ def main():
     tables.write(os.path.join(args.out, "frames.csv"), work.FRAME_COLUMNS, frames)
     here = os.path.dirname(os.path.abspath(__file__))
     names = charts.draw(os.path.join(args.out, "charts"), rows, os.path.join(here, "references.csv"), default, progress.say)
+    visibility.measure(args.build, args.out, args.targets)
     work_names = work.draw(os.path.join(args.out, "charts"), worked, *sizes)
     memory_names = memory.draw(os.path.join(args.out, "charts"), modes)
     progress.step("pictures")

@@ -80,15 +80,15 @@ def frames(rows):
 
 # ---- charts ----
 
-def chart(script, name, title, x_text, y_text, series, logarithmic=True):
-    """series: [(label, colour, [(x, y)])]"""
+def chart(script, name, title, x_text, y_text, series, logarithmic=True, ranges=()):
+    """series: [(label, colour, [(x, y)])]; ranges: commands of gnuplot's"""
     plots = []
     for i, (_, _, points) in enumerate(series):
         script += [f"$s{i} << EOD", *(f"{x} {y}" for x, y in points), "EOD"]
     plots = [f"$s{i} using 1:2 with linespoints pt 7 ps 0.6 lw 2 lc rgb '{colour}' title '{label}'" for i, (label, colour, _) in enumerate(series)]
     script += ["reset", "set grid lt 1 lc rgb '#e4e4e4'", "set key below samplen 1.5", "set border 3", "set tics nomirror", "set bmargin 6.5",
                "set format '%g'", "set logscale xy" if logarithmic else "set yrange [0:*]", f"set title '{title}'", f"set xlabel '{x_text}'",
-               f"set ylabel '{y_text}'"]
+               f"set ylabel '{y_text}'", *ranges]
     output(script, name, "plot " + ", ".join(plots))
 
 

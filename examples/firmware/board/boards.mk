@@ -11,7 +11,8 @@ memory = -T $(BOARD)/m.ld -Wl,--defsym=_flash=$(1),--defsym=_flash_bytes=$(2),--
   -nostdlib -Wl,--gc-sections -Wl,--no-warn-rwx-segments -lgcc
 
 ARM_TARGETS := microbit lm3s6965evb m0plus m3 m3_hot m4 m7 m33 m55
-cc_microbit = $(call arm,cortex-m0)
+# its flash has 64 KB
+cc_microbit = $(call arm,cortex-m0) -DEW_WITH_SPANS=0
 cc_lm3s6965evb = $(call arm,cortex-m3)
 cc_m0plus = $(call arm,cortex-m0plus)
 cc_m3 = $(call arm,cortex-m3)
