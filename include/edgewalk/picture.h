@@ -73,7 +73,7 @@ typedef struct ew_picture_counts {
 size_t ew_picture_least(const ew_picture *picture, const ew_object *objects, uint32_t count);
 
 /* What it takes for `active` triangles that reach from one band into the next to be set up once:
- * the least, 448 bytes, and 112 for each, which is enough where most of them are neither wide nor
+ * the least, 408 bytes, and 112 for each, which is enough where most of them are neither wide nor
  * shaded (docs/memory-modes.md); 256 for each with EW_DEPTH_SPANS. */
 size_t ew_picture_bytes(const ew_picture *picture, const ew_object *objects, uint32_t count, uint32_t active);
 

@@ -162,6 +162,7 @@ static EW_OWN_FRAME int go_to(ew_picture_work *w, uint32_t number)
     w->behind = w->first_triangle + object->mesh.index_count / 3u;
     if (w->used == w->object) return EW_OK;
     w->used = w->object;
+    for (int k = 0; k < 3; k++) w->geometry->corner[k].colour = ew_white; /* without colours in the mesh they stay */
     return ew_raster_set_material(w->geometry->raster, &object->material);
 }
 
@@ -230,7 +231,7 @@ static EW_OWN_FRAME int make_ready(ew_picture_work *w)
     ew_raster_vertex *const v = w->geometry->corner;
     for (int k = 0; k < 3; k++) {
         ew_corner_from(&v[k], &mesh->vertices[index[k]], &s[k], uv_unit);
-        v[k].colour = mesh->colours ? mesh->colours[index[k]] : ew_white;
+        if (mesh->colours) v[k].colour = mesh->colours[index[k]];
     }
     return DRAW;
 }

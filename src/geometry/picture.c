@@ -74,7 +74,7 @@ size_t ew_picture_least(const ew_picture *picture, const ew_object *objects, uin
 
 size_t ew_picture_bytes(const ew_picture *picture, const ew_object *objects, uint32_t count, uint32_t active)
 {
-    enum { AND = 448 };
+    enum { AND = 408 };
     const uint32_t of_active = picture->visibility == EW_DEPTH_SPANS ? 256 : 112;
     memory_plan plan;
     if (!plan_init(&plan, picture, objects, count)) return 0;
@@ -209,9 +209,7 @@ static EW_OWN_FRAME uint32_t list_some(ew_picture_work *w, const ew_object *obje
             w->number = w->first_triangle + (uint32_t)(index - mesh->indices) / 3u;
             return map[a] == NOT_YET ? a : map[b] == NOT_YET ? b : c;
         }
-        const int32_t first = first_row_of(w, map[a], map[b], map[c]);
-        if (first < 0) continue;
-        if (mask != UINT32_MAX) {
+        if (mask != UINT32_MAX) { /* first of all: half of a closed mesh is hidden */
             const ew_slot *sa = &slots[(first_vertex + a) & mask], *sb = &slots[(first_vertex + b) & mask];
             const ew_slot *sc = &slots[(first_vertex + c) & mask];
             if (sa->number == first_vertex + a && sb->number == first_vertex + b && sc->number == first_vertex + c &&
@@ -219,7 +217,8 @@ static EW_OWN_FRAME uint32_t list_some(ew_picture_work *w, const ew_object *obje
                 continue;
             }
         }
-        append(w, w->first_triangle + (uint32_t)(index - mesh->indices) / 3u, first);
+        const int32_t first = first_row_of(w, map[a], map[b], map[c]);
+        if (first >= 0) append(w, w->first_triangle + (uint32_t)(index - mesh->indices) / 3u, first);
     }
     return EW_NO_VERTEX;
 }

@@ -16,7 +16,11 @@
 #define EW_KEEP_ORDER(x) __asm__("" : "+r"(x))
 /* Part of a structure; the number of bytes is constant. */
 #define EW_COPY(to, from, bytes) ((void)__builtin_memcpy(to, from, bytes))
+/* Two items of 16 bits, both of them `value`, at an address that is a multiple of 4: one store. */
+typedef uint32_t __attribute__((may_alias)) ew_pair16;
+#define EW_STORE_TWICE(to, value) ((void)(*(ew_pair16 *)(void *)(to) = (uint32_t)(value) << 16 | (value)))
 #else
+#define EW_STORE_TWICE(to, value) ((void)((to)[0] = (value), (to)[1] = (value)))
 #define EW_ALWAYS_INLINE static inline
 #define EW_NOINLINE static EW_HOT
 #ifndef EW_COPY

@@ -99,7 +99,7 @@ static void draw_whole(int triangles, image *to)
 }
 
 /* Triangles that are active on every row, with the memory that ew_picture_bytes says for a smaller number of them:
- * 112 bytes for each and 448, of which each takes 144. Beyond, those that found no room are set up for every row. */
+ * 112 bytes for each and 408, of which each takes 144. Beyond, those that found no room are set up for every row. */
 static void active_triangles(void)
 {
     static const int rooms[] = { 16, 64, 256 };
@@ -112,7 +112,7 @@ static void active_triangles(void)
             double more;
             draw_whole(n, &whole);
             if (draw_lines(n, bytes_for(1, n, rooms[r]), &whole, &more)) abort();
-            walk_row("line_active_triangles", name, n, more, 0, 0, (448 + 112 * rooms[r]) / (double)KEPT_BYTES, more > 0 ? "degraded" : "ok");
+            walk_row("line_active_triangles", name, n, more, 0, 0, (408 + 112 * rooms[r]) / (double)KEPT_BYTES, more > 0 ? "degraded" : "ok");
         }
     }
 }
