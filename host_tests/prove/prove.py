@@ -48,7 +48,8 @@ PARTS = [
          exceptions=["narrow_basis", "within_bits"], promises=PRODUCTS),
     Part("pixels", "prove_pixels.c", "src/raster/fill.c " + CONTEXT, ints=(32,), precision=0,
          options=["-eva-auto-loop-unroll", "32", "-eva-min-loop-unroll", "3"]),
-    # the driver holds texture.c
+    # the drivers hold run.h and texture.c
+    Part("runs", "prove_runs.c", "", ints=(32,), precision=0, options=["-eva-split-limit", "300"]),
     Part("texture", "prove_texture.c", "src/raster/target.c", ints=(32,), precision=0,
          exceptions=["remainder_of_period"],
          options=["-eva-interprocedural-splits", "-eva-slevel-function",
@@ -71,6 +72,7 @@ PLANTS = [
     ("division by zero", "entry", 32, "src/raster/raster.c", "if (range <= 0 ||", "if (range < 0 ||"),
     ("out of bounds", "display", 32, "src/display/hid_display.c", "length > EW_STREAM_PAYLOAD_BYTES ||",
      "length > EW_STREAM_PAYLOAD_BYTES + 1 ||"),
+    ("endless run", "runs", 32, "src/raster/run.h", "    if (n > limit->longest) n = limit->longest;\n", ""),
     ("texel out of bounds", "texture", 32, "src/raster/texture.c", "    if (i == a->period) i = 0;\n", ""),
     ("pixel out of bounds", "draw2d", 32, "src/raster/draw2d.c", "x1 = smaller(x + width, s->x1)", "x1 = smaller(x + width, s->x1 + 1)"),
 ]
@@ -206,7 +208,7 @@ def main():
     start, report = time.time(), Report()
     print(f"{'part':<12} {'int':>3} {'alarms':>7} {'exceptions':>10} {'reached':>8} {'seconds':>8}")
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        longest_first = sorted(chosen, key=lambda part: part.name not in ("setup", "span", "texture", "draw2d", "triangle"))
+        longest_first = sorted(chosen, key=lambda part: part.name not in ("setup", "texture", "draw2d", "triangle"))
         runs = []
         for part, bits in ((part, bits) for part in longest_first for bits in part.ints):
             log = os.path.join(options.build, f"{part.name}-{bits}.log")

@@ -29,7 +29,7 @@ typedef struct divisor {
 EW_ALWAYS_INLINE divisor divisor_of(uint32_t w, int newton)
 {
     divisor d;
-    d.zeros = ew_clz32(w | 1u); /* 31 at most, even where rounding left nothing of w */
+    d.zeros = ew_clz32(w);
     d.reciprocal = newton ? ew_recip_newton(w << d.zeros) : ew_recip_table_inline(w << d.zeros);
     return d;
 }
