@@ -101,7 +101,7 @@ class Result:
 
 
 def analyse(part, bits, root, log, define=""):
-    """Eva over one part, its sources taken from `root`."""
+    """Eva over one part, its sources taken from `root`; there, too, or drivers would include those of here."""
     command = ["frama-c", "-machdep", MACHINES[bits],
                f"-cpp-extra-args=-U__GNUC__ -DEW_PORTABLE {define} -include {HERE}/copy.h -I{root}/include -I{HERE} -I{root}",
                os.path.join(HERE, part.driver), *(os.path.join(root, s) for s in part.sources),
@@ -112,7 +112,7 @@ def analyse(part, bits, root, log, define=""):
             command += ["-eva-use-spec", PROMISES[promise]]
     start = time.time()
     try:
-        done = subprocess.run(command, cwd=ROOT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+        done = subprocess.run(command, cwd=root, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, timeout=LIMIT_SECONDS, text=True, errors="replace")
         text = done.stdout
     except subprocess.TimeoutExpired as late:
@@ -201,6 +201,7 @@ def main():
     if unknown:
         print(f"prove: {unknown[0]}: no such part: {' '.join(by_name)}", file=sys.stderr)
         return 2
+    options.build = os.path.abspath(options.build)
     os.makedirs(options.build, exist_ok=True)
     chosen = [by_name[name] for name in options.parts] or PARTS
     needed = sorted(set().union(*(part.exceptions for part in chosen)))
