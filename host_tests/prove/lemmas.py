@@ -109,12 +109,24 @@ def narrow_basis():
     return cases
 
 
-def area_is_not_zero():
-    """wide_planes takes the vertices' basis only where its area is not 0, else that of the snapped
-    corners, whose area is 2^8 times the one that place() found not to be 0 (2^(24 - 2 S))."""
-    return [case("QF_LIA", declare("a b"), refuted("(= (- (* 16 a) (* 16 b)) (* 16 (- a b)))")),
-            case("QF_NRA", declare("dx1 dy1 dx2 dy2", "Real"),
-                 refuted("(= (- (* 16 dx1 16 dy2) (* 16 dx2 16 dy1)) (* 256 (- (* dx1 dy2) (* dx2 dy1))))"))]
+def remainder_of_period():
+    """within_period, for each period that is no power of 2: the quotient by floor(2^32 / period) is right or
+    one too small. A mirrored period is twice the size, and its inverse half that of the size."""
+    wide = 2 ** 32
+
+    def floor(quotient, dividend, divisor):
+        return f"(assert (<= (* {quotient} {divisor}) {dividend} (- (* (+ {quotient} 1) {divisor}) 1)))"
+
+    return [case("QF_NIA", declare("a inverse period quotient"), between(0, "a", 2 ** 31 - 1), between(1, "period", 4096),
+                 floor("inverse", wide, "period"), floor("quotient", "(* a inverse)", wide),
+                 refuted("(<= 0 (- a (* quotient period)) (- (* 2 period) 1))")),
+            case("QF_NIA", declare("inverse size"), between(1, "size", 2048), floor("inverse", wide, "size"),
+                 "(define-fun half () Int (div inverse 2))",
+                 refuted(f"(<= (* half (* 2 size)) {wide} (- (* (+ half 1) (* 2 size)) 1))")),
+            # 2^32 - 1 and 2^32 have the same quotient by what does not divide 2^32
+            case("QF_NIA", declare("inverse size"), between(1, "size", 2048), floor("inverse", wide - 1, "size"),
+                 f"(assert (not (= (* (+ inverse 1) size) {wide})))",
+                 refuted(f"(<= (* inverse size) {wide} (- (* (+ inverse 1) size) 1))"))]
 
 
 def within_bits():
@@ -158,7 +170,7 @@ def product_of_pieces():
     return cases
 
 
-LEMMAS = {f.__name__: f for f in (row_in_edge, between_corners, narrow_basis, area_is_not_zero, within_bits,
+LEMMAS = {f.__name__: f for f in (row_in_edge, between_corners, narrow_basis, within_bits, remainder_of_period,
                                 product_of_pieces)}
 
 

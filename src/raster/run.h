@@ -62,6 +62,7 @@ EW_ALWAYS_INLINE uint32_t ew_run_square(const ew_run_limit *limit, uint32_t w)
 EW_ALWAYS_INLINE int32_t ew_run_near(const ew_run_limit *limit, uint32_t w, int32_t n)
 {
     const uint32_t q = ew_run_square(limit, w);
+    //@ dynamic_split n;
     if (n > limit->longest) n = limit->longest;
     while (n < limit->longest && ew_run_fits(limit, q, n + 1)) n++;
     while (!ew_run_fits(limit, q, n)) n--;
@@ -72,6 +73,7 @@ EW_ALWAYS_INLINE int32_t ew_run_near(const ew_run_limit *limit, uint32_t w, int3
 EW_ALWAYS_INLINE int32_t ew_run_after(const ew_run_limit *limit, uint32_t w, int32_t n)
 {
     const uint32_t q = ew_run_square(limit, w);
+    //@ dynamic_split n;
     if (limit->fall) while (!ew_run_fits(limit, q, n)) n--;
     else while (n < limit->longest && ew_run_fits(limit, q, n + 1)) n++;
     return n;

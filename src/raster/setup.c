@@ -165,7 +165,7 @@ static void wide_planes(ew_triangle *t, ew_basis *b, const ew_corners *c, const 
     }
     if (!near_enough) basis_of_snapped(b, c);
     uint64_t area = ew_abs64(b->area);
-    //@ assert area_is_not_zero: area > 0;
+    if (area == 0) area = 1; /* never: placing found that of the snapped corners not to be 0 */
     int zeros = ew_clz64(area);
     uint32_t r = ew_recip_newton((uint32_t)((area << zeros) >> 32));
     for (int i = 0; i <= t->attributes; i++) {
@@ -212,7 +212,7 @@ static void sides_init(sides *s, const ew_basis *b, const ew_raster_vertex *cons
 {
     s->dx[0] = b->dx1, s->dy[0] = b->dy1;
     s->dx[1] = b->dx2, s->dy[1] = b->dy2;
-    s->dx[2] = b->dx2 - b->dx1, s->dy[2] = b->dy2 - b->dy1; /* <= 2^30: between two corners, too */
+    s->dx[2] = ew_wrap_sub32(b->dx2, b->dx1), s->dy[2] = ew_wrap_sub32(b->dy2, b->dy1); /* <= 2^30: between two corners, too */
     s->dw[0] = (int32_t)(v[1]->w - v[0]->w); /* |dw| < 2^31 */
     s->dw[1] = (int32_t)(v[2]->w - v[0]->w);
     s->dw[2] = (int32_t)(v[2]->w - v[1]->w);
@@ -229,23 +229,24 @@ static const int8_t moved_hull[][3] = { { -9, 17, 0 }, { -7, 0, 16 }, { 9, 0, 0 
 /* Whether that hull lies within the tolerance, 4 t w_min = `allowed`; |V| is at most twice as large. */
 static int hull_is_within(const sides *s, int longest, uint64_t allowed)
 {
+    const int down = 54 - ew_clz64(allowed);
+    //@ split longest;
+    if (down < 0) return 0;
     /* a and b are the corners of the longest side, k is the third */
     const int a = longest > 1, b = longest > 0 ? 2 : 1, k = 2 - longest;
     const int i = s->dw[longest] < 0 ? a : b, j = a + b - i;
     const int side[3] = { longest, i + k - 1, j + k - 1 };
-    const int down = 54 - ew_clz64(allowed);
-    if (down < 0) return 0;
-    int32_t x[3], y[3];
+    uint32_t x[3], y[3]; /* signed ones, whose sums and products are taken modulo 2^32 */
     for (int n = 0; n < 3; n++) { /* of `allowed` 10 bits are left: 2^11 */
-        x[n] = (int32_t)EW_ASR(ew_mul_s32(s->dx[side[n]], s->dw[side[n]]), down);
-        y[n] = (int32_t)EW_ASR(ew_mul_s32(s->dy[side[n]], s->dw[side[n]]), down);
+        x[n] = (uint32_t)EW_ASR(ew_mul_s32(s->dx[side[n]], s->dw[side[n]]), down);
+        y[n] = (uint32_t)EW_ASR(ew_mul_s32(s->dy[side[n]], s->dw[side[n]]), down);
     }
-    const int32_t most = ((int32_t)(allowed >> down) - 3) * 16; /* x and y are off by 1: 26 at most; 2^14 */
+    const uint32_t most = ((uint32_t)(allowed >> down) - 3u) * 16u; /* x and y are off by 1: 26 at most; 2^14 */
     for (unsigned n = 0; n < sizeof moved_hull / sizeof *moved_hull; n++) {
-        const int8_t *of = moved_hull[n];
-        const int32_t mx = of[0] * x[0] + of[1] * x[1] + of[2] * x[2]; /* 26 2^11 in any direction: */
-        const int32_t my = of[0] * y[0] + of[1] * y[1] + of[2] * y[2]; /* the squares' sum is below 2^31.5 */
-        if ((uint32_t)mx * (uint32_t)mx + (uint32_t)my * (uint32_t)my > (uint32_t)(most * most)) return 0;
+        const uint32_t of[3] = { (uint32_t)moved_hull[n][0], (uint32_t)moved_hull[n][1], (uint32_t)moved_hull[n][2] };
+        const uint32_t mx = of[0] * x[0] + of[1] * x[1] + of[2] * x[2]; /* 26 2^11 in any direction: */
+        const uint32_t my = of[0] * y[0] + of[1] * y[1] + of[2] * y[2]; /* the squares' sum is below 2^31.5 */
+        if (mx * mx + my * my > most * most) return 0;
     }
     return 1;
 }
@@ -256,6 +257,7 @@ static int affine_suffices(ew_affine_move *by, const sides *s, uint32_t toleranc
 {
     const uint64_t allowed = ew_mul_u32(w_min, UINT32_C(1024) * tolerance); /* q12: 2^31 2^18 */
     uint64_t most = 0;
+    by->side = 0;
     for (int i = 0; i < 3; i++) {
         const uint64_t product = ew_mul_u32(s->length[i], ew_abs32(s->dw[i])); /* 2^31.6 2^31 */
         if (product > most) most = product, by->side = (uint8_t)i;

@@ -79,6 +79,7 @@ static EW_HOT uint32_t within_period(uint32_t whole, uint32_t size, int wrap, ui
         const uint32_t a = negative ? ~whole : whole;
         r = a - ew_mulh_u32(a, wrap == EW_WRAP_MIRROR ? inverse >> 1 : inverse) * period;
         if (r >= period) r -= period;
+        //@ assert remainder_of_period: r < period;
         if (negative) r = period - 1u - r;
     }
     return r;
@@ -87,11 +88,9 @@ static EW_HOT uint32_t within_period(uint32_t whole, uint32_t size, int wrap, ui
 /* floor(u ratio / 2^32), u as q32.32 with its sign. */
 static uint64_t scaled(uint64_t u, uint32_t ratio)
 {
-    uint32_t whole = (uint32_t)(u >> 32), fraction = (uint32_t)(u & 0xFFFFFFFFu);
-    uint32_t top = ew_mulh_u32(whole, ratio) - ((int32_t)whole < 0 ? ratio : 0u);
-    return ((uint64_t)top << 32 | whole * ratio) + ew_mulh_u32(fraction, ratio);
+    const uint32_t whole = (uint32_t)(u >> 32), fraction = (uint32_t)(u & 0xFFFFFFFFu);
+    return ew_mul_u32(whole, ratio) - ((int32_t)whole < 0 ? (uint64_t)ratio << 32 : 0u) + ew_mulh_u32(fraction, ratio);
 }
-
 
 /* The position, the step and the size are those of the first level. `back` is taken off the
  * position, below one texel. */
@@ -111,18 +110,18 @@ EW_NOINLINE void axis_start(ew_axis *a, uint32_t level, int wrap, uint32_t inver
         a->at = scaled(a->at, a->size * inverse); /* inverse <= 2^31: the level is at most half as large */
         a->step = scaled(a->step, a->size * inverse);
     }
-    a->at -= back;
     if (!clamped) {
-        if (a->at >> 63) a->at += (uint64_t)a->period << 32;
+        if (a->at < back) a->at += (uint64_t)a->period << 32;
         if (a->step >> 63) a->step += (uint64_t)a->period << 32;
     }
+    a->at -= back;
 }
 
 /* With the sum below 2 periods. */
 static void axis_step(ew_axis *a)
 {
     a->at += a->step;
-    if (a->period && a->at >> 32 >= a->period) a->at -= (uint64_t)a->period << 32;
+    if (a->period && a->at >= (uint64_t)a->period << 32) a->at -= (uint64_t)a->period << 32;
 }
 
 static uint32_t clamp(uint32_t i, uint32_t size)
@@ -168,7 +167,7 @@ EW_HOT uint32_t ew_texture_level(const ew_run *run)
     if (shift < 0) return 0; /* all below 2^14: rho < 2^-1.5 */
     ux >>= shift, vx >>= shift, uy >>= shift, vy >>= shift;           /* < 2^15 */
     uint32_t square = larger(ux * ux + vx * vx, uy * uy + vy * vy);   /* < 2^31, >= 2^26 */
-    int zeros = ew_clz32(square);
+    int zeros = ew_clz32(square | 1u); /* never 0: Eva sees it, too */
     /* square = 2^(31 - zeros) (1 + x), and log2(1 + x) = x + 89/256 x (1 - x) within 0.0078 */
     uint32_t x = (square << zeros << 1) >> 16;                        /* uq0.16 */
     x += ((x * (65536u - x)) >> 16) * 89u >> 8;                       /* x (1 - x) <= 2^30 */
@@ -344,6 +343,7 @@ EW_HOT void ew_texture_start(ew_sampler *s, const ew_raster *raster, const ew_ru
     s->smooth = EW_WITH_BILINEAR && raster->material.filter != EW_FILTER_NEAREST;
     s->share = 256;
     s->cuts = s->next_share < 128 ? cuts_of(raster) : 0;
+    //@ split s->level;
     start_level(s, raster, run);
 }
 
@@ -354,6 +354,7 @@ EW_HOT int ew_texture_next(ew_sampler *s, const ew_raster *raster, const ew_run 
     s->share = s->next_share;
     s->cuts = s->share < 128 ? 0 : cuts_of(raster);
     s->next_share = 0;
+    //@ split s->level;
     start_level(s, raster, run);
     return 1;
 }
