@@ -128,6 +128,12 @@ typedef struct ew_differences {
     int32_t d[EW_PLANES][2];
 } ew_differences;
 
+/* What lies between corners 0 and 1, 0 and 2, 1 and 2: the side of a and b is a + b - 1. */
+typedef struct ew_sides {
+    int32_t dx[3], dy[3], dw[3]; /* q20.12, uq1.31; b's less a's                           */
+    uint32_t length[3];
+} ew_sides;
+
 /* How attributes of the affine rung are moved: by a share of what they differ by along a side, of 0 and 1,
  * of 0 and 2, or of 1 and 2. */
 typedef struct ew_affine_move {
@@ -289,6 +295,7 @@ typedef struct ew_raster_work {
             ew_basis basis;
             ew_weights weights;
             ew_differences differences;
+            ew_sides sides;
             ew_affine_move move;
             uint32_t w[3]; /* of the corners, scaled                                       */
         } setup;

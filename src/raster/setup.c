@@ -59,7 +59,7 @@ static int is_narrow(const ew_basis *b, const ew_corners *c, uint32_t w_min, uin
            (uint64_t)(3 * steps + 16) << bits <= (uint64_t)w_min << 2; /* 2^11 2^27, of 256 px */
 }
 
-static void weights_init(ew_weights *g, const ew_basis *b)
+static EW_OWN_FRAME void weights_init(ew_weights *g, const ew_basis *b)
 {
     int up = ew_clz32(b->reach) - 1;
     uint64_t area = ew_abs64(b->area);
@@ -154,7 +154,7 @@ static void plane64_init(ew_plane64 *p, const ew_basis *b, uint32_t r, int zeros
 
 /* Where the finer positions' planes could leave the values of the corners too far, those of
  * the snapped ones are taken instead, which are never evaluated outside. */
-static void wide_planes(ew_triangle *t, ew_basis *b, const ew_corners *c, const ew_differences *of, uint32_t w_min)
+static EW_OWN_FRAME void wide_planes(ew_triangle *t, ew_basis *b, const ew_corners *c, const ew_differences *of, uint32_t w_min)
 {
     int near_enough = b->area != 0 && (b->area > 0) == c->positive;
     /* as much again as attributes have at the farthest corner */
@@ -202,13 +202,7 @@ static uint32_t length_of(uint32_t dx, uint32_t dy)
     return dx > dy ? dx + dy / 2 : dy + dx / 2;
 }
 
-/* What lies between corners 0 and 1, 0 and 2, 1 and 2: the side of a and b is a + b - 1. */
-typedef struct sides {
-    int32_t dx[3], dy[3], dw[3]; /* q20.12, uq1.31; b's less a's                           */
-    uint32_t length[3];
-} sides;
-
-static void sides_init(sides *s, const ew_basis *b, const ew_raster_vertex *const v[3])
+static void sides_init(ew_sides *s, const ew_basis *b, const ew_raster_vertex *const v[3])
 {
     s->dx[0] = b->dx1, s->dy[0] = b->dy1;
     s->dx[1] = b->dx2, s->dy[1] = b->dy2;
@@ -227,7 +221,7 @@ static void sides_init(sides *s, const ew_basis *b, const ew_raster_vertex *cons
 static const int8_t moved_hull[][3] = { { -9, 17, 0 }, { -7, 0, 16 }, { 9, 0, 0 }, { -7, 16, 0 }, { -7, 17, -2 } };
 
 /* Whether that hull lies within the tolerance, 4 t w_min = `allowed`; |V| is at most twice as large. */
-static int hull_is_within(const sides *s, int longest, uint64_t allowed)
+static int hull_is_within(const ew_sides *s, int longest, uint64_t allowed)
 {
     const int down = 54 - ew_clz64(allowed);
     //@ split longest;
@@ -253,7 +247,7 @@ static int hull_is_within(const sides *s, int longest, uint64_t allowed)
 
 /* Whether attributes drawn linearly over the whole triangle are displaced by at most the
  * tolerance, and how they are moved for that. */
-static int affine_suffices(ew_affine_move *by, const sides *s, uint32_t tolerance, uint32_t w_min, uint32_t w_max)
+static int affine_suffices(ew_affine_move *by, const ew_sides *s, uint32_t tolerance, uint32_t w_min, uint32_t w_max)
 {
     const uint64_t allowed = ew_mul_u32(w_min, UINT32_C(1024) * tolerance); /* q12: 2^31 2^18 */
     uint64_t most = 0;
@@ -274,21 +268,21 @@ static int affine_suffices(ew_affine_move *by, const sides *s, uint32_t toleranc
 }
 
 /* Whether any point of the triangle is within the tolerance of every other. */
-static int constant_suffices(const sides *s, uint32_t tolerance)
+static int constant_suffices(const ew_sides *s, uint32_t tolerance)
 {
     const uint32_t t = tolerance * 256u;
     return s->length[0] <= t && s->length[1] <= t && s->length[2] <= t;
 }
 
-static uint8_t choose_rung(ew_raster *raster, const ew_raster_vertex *const v[3], uint32_t w_min, uint32_t w_max,
-                           uint8_t per_pixel)
+static EW_OWN_FRAME uint8_t choose_rung(ew_raster *raster, const ew_raster_vertex *const v[3], uint32_t w_min,
+                                        uint32_t w_max, uint8_t per_pixel)
 {
     const ew_material *m = &raster->material;
-    sides s;
+    ew_sides *s = &raster->work.now.setup.sides;
     if (m->rung != EW_RUNG_AUTO) return m->rung;
-    sides_init(&s, &raster->work.now.setup.basis, v);
-    if (m->tolerance > 0 && raster->texture.levels <= 1 && constant_suffices(&s, m->tolerance)) return EW_RUNG_CONSTANT;
-    if (affine_suffices(&raster->work.now.setup.move, &s, m->tolerance, w_min, w_max)) return EW_RUNG_AFFINE;
+    sides_init(s, &raster->work.now.setup.basis, v);
+    if (m->tolerance > 0 && raster->texture.levels <= 1 && constant_suffices(s, m->tolerance)) return EW_RUNG_CONSTANT;
+    if (affine_suffices(&raster->work.now.setup.move, s, m->tolerance, w_min, w_max)) return EW_RUNG_AFFINE;
     return m->tolerance > 0 ? EW_RUNG_RUNS : per_pixel;
 }
 
