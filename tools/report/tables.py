@@ -11,6 +11,7 @@ JUDGED = "wrong_px double_hits disp_max_px disp_rms_px u_max u_rms v_max v_rms d
 AUTO = "auto"  # methods whose name begins so choose their rung; the others are single rungs
 SNAP = 1 / 256  # px by which the disc of the promise is wider than the tolerance: docs/error-bound.md
 WITHIN_BOUND, WITHIN_MEASURED = 1.05, 1.10
+LEAST_PROMISED = 6  # bits of the reciprocal table: docs/error-bound.md
 
 
 class Failed(Exception):
@@ -122,6 +123,9 @@ def auto_row(auto, rungs, metric):
         ratio = own / float(best[metric])
         out.update({column: label(best), f"{what}_per_px": best[metric], f"over_{what}": f"{ratio - 1:.4f}"})
         over = over or ratio > limit
+    if over and auto["recip_bits"] < LEAST_PROMISED:
+        notes.append("nothing is promised with so small a table: auto does not rely on it where it happens to do")
+        over = False
     out.update(state="over" if over else "ok", notes="; ".join(notes))
     return out
 
