@@ -8,7 +8,7 @@ static int32_t saturate32(int64_t a)
     return (int32_t)a;
 }
 
-uint64_t ew_mul_u32_pieces(uint32_t a, uint32_t b)
+EW_HOT uint64_t ew_mul_u32_pieces(uint32_t a, uint32_t b)
 {
     uint32_t ah = a >> 16, al = a & 0xFFFFu, bh = b >> 16, bl = b & 0xFFFFu;
     uint32_t low = al * bl, middle = ah * bl + (low >> 16); /* <= (2^16 - 1)^2 + 2^16 - 1 */

@@ -119,7 +119,7 @@ int ew_raster_set_fog(ew_raster *raster, uint16_t rgb565, ew_uq1_31 w_near, ew_u
 
 /* n items become `value`, as far as may be two at a time: 3 instructions for each would be a fifth of a frame
  * of scene B. */
-static void fill_words(uint16_t *at, uint32_t n, uint16_t value)
+static EW_HOT void fill_words(uint16_t *at, uint32_t n, uint16_t value)
 {
     if (n > 0 && (uintptr_t)at % 4u) *at++ = value, n--;
     for (; n >= 16; n -= 16, at += 16) {
