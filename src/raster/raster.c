@@ -121,12 +121,15 @@ int ew_raster_set_fog(ew_raster *raster, uint16_t rgb565, ew_uq1_31 w_near, ew_u
  * of scene B. */
 static EW_HOT void fill_words(uint16_t *at, uint32_t n, uint16_t value)
 {
-    if (n > 0 && (uintptr_t)at % 4u) *at++ = value, n--;
-    for (; n >= 16; n -= 16, at += 16) {
-        EW_STORE_TWICE(at, value), EW_STORE_TWICE(at + 2, value), EW_STORE_TWICE(at + 4, value), EW_STORE_TWICE(at + 6, value);
-        EW_STORE_TWICE(at + 8, value), EW_STORE_TWICE(at + 10, value), EW_STORE_TWICE(at + 12, value), EW_STORE_TWICE(at + 14, value);
+    uint32_t i = 0;
+    if (n > 0 && (uintptr_t)at % 4u) at[i++] = value;
+    for (; i + 16u <= n; i += 16) {
+        uint16_t *to = at + i;
+        EW_STORE_TWICE(to, value), EW_STORE_TWICE(to + 2, value), EW_STORE_TWICE(to + 4, value);
+        EW_STORE_TWICE(to + 6, value), EW_STORE_TWICE(to + 8, value), EW_STORE_TWICE(to + 10, value);
+        EW_STORE_TWICE(to + 12, value), EW_STORE_TWICE(to + 14, value);
     }
-    for (; n > 0; n--) *at++ = value;
+    for (; i < n; i++) at[i] = value;
 }
 
 EW_HOT void ew_raster_fill(ew_raster *raster, const ew_rect *r, uint16_t rgb565, uint16_t *depth)
