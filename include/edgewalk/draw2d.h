@@ -46,7 +46,7 @@ typedef struct ew_font {
     const uint8_t *glyphs;
     uint8_t width, height; /* of the widest glyph and of all of them, px, 1 to 255; a glyph that
                               says it is wider is drawn that wide                          */
-    uint8_t gap;           /* columns left free between glyphs                             */
+    uint8_t gap;           /* columns between glyphs                                       */
     uint8_t line;          /* rows from the top of a line to that of the next              */
     uint8_t first, last;   /* codes that there are glyphs for, first <= last               */
     uint8_t unknown;       /* the code whose glyph stands for all others: first to last    */
