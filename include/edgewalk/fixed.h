@@ -41,7 +41,7 @@ static inline int32_t ew_wrap_add32(int32_t a, int32_t b) { return (int32_t)((ui
 static inline int32_t ew_wrap_sub32(int32_t a, int32_t b) { return (int32_t)((uint32_t)a - (uint32_t)b); }
 static inline uint64_t ew_wrap_mul64(uint64_t a, int32_t b) { return a * (uint64_t)(int64_t)b; }
 
-/* 32 x 32 -> 64 bits, exact, the high word of that: floor(a b / 2^32), and the same for b < 2^16. Forms in pieces are
+/* 32 x 32 -> 64 bits, exact, also with b < 2^16, and the high word: floor(a b / 2^32). Forms in pieces are
  * made of 16-bit ones, for cores without a long multiply, where compilers call a library for
  * 64 x 64 bits; all give the same bits. */
 uint64_t ew_mul_u32_pieces(uint32_t a, uint32_t b);

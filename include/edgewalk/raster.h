@@ -205,7 +205,7 @@ typedef struct ew_cost {
     uint16_t run, run_pixel, pixel;
 } ew_cost;
 
-/* Counted with `make count`; the generic one, which ew_raster_init sets, lies between them. */
+/* From `make count` (src/raster/cost.c); the generic one, which ew_raster_init sets, lies between them. */
 extern const ew_cost ew_cost_generic, ew_cost_m0plus, ew_cost_m3, ew_cost_host;
 
 /* Returns EW_OK or EW_ERR_ARGUMENT. */

@@ -137,7 +137,7 @@ typedef struct ew_sides {
 /* How attributes of the affine rung are moved: by a share of what they differ by along a side, of 0 and 1,
  * of 0 and 2, or of 1 and 2. */
 typedef struct ew_affine_move {
-    int32_t share; /* 2^32 is all: up to 7 / 320 */
+    int32_t share; /* 2^32 is all: 21/1024 at most, docs/error-bound.md */
     uint8_t side;
 } ew_affine_move;
 
