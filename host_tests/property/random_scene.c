@@ -71,3 +71,12 @@ void random_scene_init(random_scene *scene)
 }
 
 uint32_t random_scene_stride(const random_scene *scene) { return (scene->picture.width + 7u) / 8u * 8u; }
+
+void random_half(ew_picture *half, const ew_picture *whole, uint16_t border, int lower)
+{
+    *half = *whole;
+    half->buffers = (uint8_t)(1 + pick(2));
+    half->first_row = lower ? border : 0;
+    half->end_row = lower ? whole->height : border;
+    half->rows = (uint16_t)(1 + pick(whole->height));
+}

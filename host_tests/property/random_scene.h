@@ -23,4 +23,7 @@ void random_scene_init(random_scene *scene);
 /* Pixels from one row of it to the next. */
 uint32_t random_scene_stride(const random_scene *scene);
 
+/* The rows above `border`, or those from it on, in bands of any height. */
+void random_half(ew_picture *half, const ew_picture *whole, uint16_t border, int lower);
+
 #endif

@@ -181,11 +181,7 @@ static void two_threads(void **state)
         if (scene.picture.height < 2) continue;
         const uint16_t border = (uint16_t)(1 + pick(scene.picture.height - 1u));
         for (int i = 0; i < 2; i++) {
-            c[i].picture = scene.picture;
-            c[i].picture.buffers = (uint8_t)(1 + pick(2));
-            c[i].picture.first_row = i ? border : 0;
-            c[i].picture.end_row = i ? scene.picture.height : border;
-            c[i].picture.rows = (uint16_t)(1 + pick(scene.picture.height));
+            random_half(&c[i].picture, &scene.picture, border, i);
             random_memory(&c[i]);
         }
         test_context("EW_CASE=%ld, border %d, bands of %d and %d", k.number, border, c[0].picture.rows, c[1].picture.rows);
