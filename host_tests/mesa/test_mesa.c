@@ -20,6 +20,7 @@
 #include "../reference/exact.h"
 #include "../reference/scenes.h"
 #include "edgewalk/geometry.h"
+#include "edgewalk/scene.h"
 
 enum { W = STANDARD_WIDTH, H = STANDARD_HEIGHT, LOG2_SIZE = 8, SIZE = 1 << LOG2_SIZE, ONE = 1 << EW_SUBPIXEL_BITS };
 
@@ -30,22 +31,36 @@ static cover by_edges, by_rows;
 
 /* ---- the core ---- */
 
-static struct {
-    ew_raster_vertex v[2048][3];
+enum { MOST_TRIANGLES = 4096 };
+
+/* Triangles as the core sets them up: clipped, projected, in front. */
+typedef struct triangle_list {
+    ew_raster_vertex v[MOST_TRIANGLES][3];
+    int width[MOST_TRIANGLES], height[MOST_TRIANGLES]; /* of the texture, 0 without */
     int count;
-} traced;
+} triangle_list;
+static triangle_list traced, listed;
+
+/* The fragment that a picture's pixel shows, and its triangle. */
+static struct {
+    int32_t u, v;
+    int triangle;
+} seen_at[H][W];
 
 void ew_trace_triangle(const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *c, int rung)
 {
+    const int i = traced.count++;
     (void)rung;
-    if (traced.count == 2048) return;
-    traced.v[traced.count][0] = *a, traced.v[traced.count][1] = *b, traced.v[traced.count++][2] = *c;
+    if (i >= MOST_TRIANGLES) fail_msg("more than %d triangles", MOST_TRIANGLES);
+    traced.v[i][0] = *a, traced.v[i][1] = *b, traced.v[i][2] = *c;
+    traced.width[i] = raster.material.texture ? raster.texture.width : 0;
+    traced.height[i] = raster.material.texture ? raster.texture.height : 0;
 }
 
 void ew_trace_fragment(uint16_t x, uint16_t y, uint16_t d, ew_q20_12 u, ew_q20_12 v)
 {
-    (void)d, (void)u, (void)v;
     hits[y * W + x]++;
+    if (d > depth[y * W + x]) seen_at[y][x].u = u, seen_at[y][x].v = v, seen_at[y][x].triangle = traced.count - 1;
 }
 
 static void start(uint16_t width, uint16_t height, ew_rung rung, uint16_t tolerance)
@@ -62,6 +77,7 @@ static void start(uint16_t width, uint16_t height, ew_rung rung, uint16_t tolera
 static void draw_core(const ew_raster_vertex v[3])
 {
     memset(hits, 0, sizeof hits);
+    traced.count = 0;
     ew_raster_clear(&raster, 0);
     assert_true(ew_raster_triangle(&raster, &v[0], &v[1], &v[2]) >= 0);
 }
@@ -74,7 +90,7 @@ static int mesa_start(void)
     static GLubyte ids[SIZE][SIZE][4];
     if (context) return 1;
     setenv("LP_NUM_THREADS", "0", 1); /* small pictures: threads only wait */
-    context = OSMesaCreateContextExt(OSMESA_RGBA, 0, 0, 0, NULL);
+    context = OSMesaCreateContextExt(OSMESA_RGBA, 24, 0, 0, NULL);
     GLint bits = 0;
     if (!context || !OSMesaMakeCurrent(context, image, GL_UNSIGNED_BYTE, W, H)) {
         printf("# SKIP OSMesa has no context to give\n");
@@ -87,13 +103,14 @@ static int mesa_start(void)
         return 0;
     }
     for (int v = 0; v < SIZE; v++) {
-        for (int u = 0; u < SIZE; u++) ids[v][u][0] = (GLubyte)u, ids[v][u][1] = (GLubyte)v, ids[v][u][2] = 255;
+        for (int u = 0; u < SIZE; u++) ids[v][u][0] = (GLubyte)u, ids[v][u][1] = (GLubyte)v, ids[v][u][2] = ids[v][u][3] = 255;
     }
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, SIZE, SIZE, 0, GL_RGBA, GL_UNSIGNED_BYTE, ids);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    glTexEnvi(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, GL_REPLACE);
+    glTexEnvi(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, GL_MODULATE);
     glEnable(GL_TEXTURE_2D);
+    glEnable(GL_DEPTH_TEST);
     glDisable(GL_DITHER);
     return 1;
 }
@@ -108,8 +125,11 @@ static int side(int64_t px)
     return n <= 16384 ? n : 0;
 }
 
-/* Draws into `image`. Returns 0 for a triangle that no viewport holds. */
-static int draw_mesa(const ew_raster_vertex v[3])
+static void clear_mesa(void) { glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT); }
+
+/* Draws into `image`: texel in red and green, a number from 1 to 65535 in blue and alpha. Returns 0
+ * for a triangle that no viewport holds. */
+static int draw_mesa(const ew_raster_vertex v[3], int number)
 {
     int64_t sx[3], sy[3];
     triangle_snapped(sx, sy, v);
@@ -124,17 +144,25 @@ static int draw_mesa(const ew_raster_vertex v[3])
     glViewport(left, top, width, height);
     glMatrixMode(GL_PROJECTION);
     glLoadIdentity();
-    glOrtho(0, width, 0, height, -1, 1);
-    glClear(GL_COLOR_BUFFER_BIT);
+    glOrtho(0, width, 0, height, -2, 2); /* room on both sides of 1/z, which is from 0 to 1 */
+    glColor4ub(255, 255, (GLubyte)(number & 255), (GLubyte)(number >> 8));
     glBegin(GL_TRIANGLES);
     for (int i = 0; i < 3; i++) {
         double w = ldexp(v[i].w, -31), scale = w / (4096.0 * SIZE);
         glTexCoord4d(v[i].u * scale, v[i].v * scale, 0, w);
-        glVertex2f((float)(sx[i] - left * ONE) / ONE, (float)(sy[i] - top * ONE) / ONE);
+        glVertex3f((float)(sx[i] - left * ONE) / ONE, (float)(sy[i] - top * ONE) / ONE, (float)w);
     }
     glEnd();
     glFinish();
     return 1;
+}
+
+static int mesa_number(int x, int y) { return image[y][x][2] | image[y][x][3] << 8; }
+
+static int draw_mesa_alone(const ew_raster_vertex v[3])
+{
+    clear_mesa();
+    return draw_mesa(v, 1);
 }
 
 /* ---- coverage ---- */
@@ -150,10 +178,10 @@ static long compare(const ew_raster_vertex v[3], int width, int height)
     cover_by_edges(&by_edges, sx, sy);
     cover_by_rows(&by_rows, sx, sy, 3);
     draw_core(v);
-    int held = draw_mesa(v);
+    int held = draw_mesa_alone(v);
     for (int y = 0; y < height; y++) {
         for (int x = 0; x < width; x++) {
-            int exact = cover_at(&by_edges, x, y), mesa = held ? image[y][x][2] != 0 : exact;
+            int exact = cover_at(&by_edges, x, y), mesa = held ? mesa_number(x, y) != 0 : exact;
             covered += exact;
             if (hits[y * W + x] != exact || (depth[y * W + x] != 0) != exact || mesa != exact ||
                 cover_at(&by_rows, x, y) != exact) {
@@ -194,8 +222,7 @@ static void random_triangles(void **state)
 
 /* ---- the standard scenes ---- */
 
-/* The scene's triangles as the core sets them up: clipped, projected, in front. */
-static void trace_scene(char name)
+static void trace_standard(char name)
 {
     static standard_scene scene;
     static ew_screen_vertex screen[33 * 33];
@@ -213,6 +240,23 @@ static void trace_scene(char name)
     const ew_mesh mesh = { .vertices = scene.vertices, .screen = screen, .indices = scene.indices,
                            .index_count = scene.index_count, .uv_fraction_bits = scene.uv_fraction_bits };
     assert_true(ew_draw_triangles(&geometry, &mesh) > 0);
+    listed = traced;
+}
+
+/* All of the list, each triangle on its own. */
+static void compare_list(const char *what)
+{
+    long judged = 0, left_out = 0;
+    for (int i = 0; i < listed.count; i++) {
+        test_context("%s, triangle %d", what, i);
+        long covered = compare(listed.v[i], W, H);
+        if (covered < 0) left_out++;
+        else judged += covered;
+    }
+    cases_figure("Mesa", what, listed.count - left_out, judged, 0, NAN, "");
+    if (left_out) {
+        printf("# %s: %ld triangles are larger than Mesa's largest viewport: the two exact counts only\n", what, left_out);
+    }
 }
 
 static void standard_scenes(void **state)
@@ -221,25 +265,10 @@ static void standard_scenes(void **state)
     if (!mesa_start()) skip();
     start(W, H, EW_RUNG_EXACT, 0);
     for (char name = 'A'; name <= 'E'; name++) {
-        long judged = 0, left_out = 0;
-        static ew_raster_vertex v[2048][3];
-        trace_scene(name);
-        int count = traced.count;
-        memcpy(v, traced.v, sizeof v);
-        for (int i = 0; i < count; i++) {
-            traced.count = 0;
-            test_context("scene %c, triangle %d", name, i);
-            long covered = compare(v[i], W, H);
-            if (covered < 0) left_out++;
-            else judged += covered;
-        }
         char text[64];
+        trace_standard(name);
         snprintf(text, sizeof text, "scene %c", name);
-        cases_figure("Mesa", text, count - left_out, judged, 0, NAN, "");
-        if (left_out) {
-            printf("# scene %c: %ld triangles are larger than Mesa's largest viewport: the two exact counts only\n", name,
-                   left_out);
-        }
+        compare_list(text);
     }
 }
 
@@ -260,7 +289,7 @@ static void compare_texels(texels_seen *seen, const ew_raster_vertex v[3], int w
 {
     exact_corners corners;
     draw_core(v);
-    if (!draw_mesa(v) || !exact_corners_init(&corners, v)) return;
+    if (!draw_mesa_alone(v) || !exact_corners_init(&corners, v)) return;
     seen->triangles++;
     for (int y = 0; y < height; y++) {
         for (int x = 0; x < width; x++) {
@@ -294,16 +323,13 @@ static void nearest_texels(void **state)
     (void)state;
     if (!mesa_start()) skip();
     static const uint16_t tolerances[] = { 0, 4 };
-    static ew_raster_vertex v[2048][3];
     for (int k = 0; k < 2; k++) {
         start(W, H, EW_RUNG_AUTO, tolerances[k]);
         for (char name = 'A'; name <= 'D'; name++) {
             texels_seen seen = { 0 };
             char text[64];
-            trace_scene(name);
-            int count = traced.count;
-            memcpy(v, traced.v, sizeof v);
-            for (int i = 0; i < count; i++) traced.count = 0, compare_texels(&seen, v[i], W, H, tolerances[k]);
+            trace_standard(name);
+            for (int i = 0; i < listed.count; i++) compare_texels(&seen, listed.v[i], W, H, tolerances[k]);
             snprintf(text, sizeof text, "scene %c", name);
             texels_figure(text, tolerances[k], &seen);
         }
@@ -324,8 +350,129 @@ static void nearest_texels(void **state)
     }
 }
 
+/* ---- the sample scenes ---- */
+
+static struct {
+    ew_scene scene;
+    ew_scene_camera camera;
+    uint32_t bytes[1 << 18];
+    ew_mat34 world[64];
+    ew_screen_vertex scratch[4096];
+    const char *name;
+} sample;
+
+/* EW_BIN is the folder of the programs; baked scenes lie beside it. */
+static void open_sample(const char *name)
+{
+    char path[4096];
+    const char *bin = getenv("EW_BIN");
+    snprintf(path, sizeof path, "%s/../scenes/%s.ewb", bin ? bin : "build/release/bin", name);
+    FILE *file = fopen(path, "rb");
+    if (!file) fail_msg("%s: cannot be opened", path);
+    size_t size = fread(sample.bytes, 1, sizeof sample.bytes, file);
+    fclose(file);
+    assert_int_equal(ew_scene_open(&sample.scene, sample.bytes, size), EW_OK);
+    assert_true(sample.scene.section[EW_SECTION_NODE].count <= 64 && sample.scene.largest_primitive <= 4096);
+    ew_scene_get_camera(&sample.scene, &sample.camera);
+    sample.name = name;
+}
+
+/* Draws it as firmware would, and lists what was drawn. */
+static void draw_sample(uint32_t time_ms)
+{
+    static ew_geometry geometry;
+    const ew_viewport viewport = { 0, 0, W, H };
+    const ew_target target = { .colour = colour, .depth = depth, .width = W, .height = H, .stride = W };
+    assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
+    ew_geometry_init(&geometry, &raster);
+    ew_raster_clear(&raster, 0);
+    traced.count = 0;
+    assert_int_equal(ew_scene_pose(&sample.scene, time_ms, sample.world), EW_OK);
+    assert_true(ew_scene_draw(&sample.scene, &sample.camera, sample.world, &viewport, &geometry, sample.scratch) > 0);
+    listed = traced;
+}
+
+typedef struct picture_seen {
+    long pixels, other_triangle, other_texel, wrong;
+} picture_seen;
+
+/* The whole picture, depth tests and all. Mesa and the core show the same triangle, or two whose depths
+ * are one and the same unit of the 16-bit buffer there; of the same triangle each shows a texel that
+ * its promise allows. Texels are told apart modulo the texture's size, which divides SIZE. */
+static void compare_picture(picture_seen *seen)
+{
+    static exact_corners corners[MOST_TRIANGLES];
+    clear_mesa();
+    for (int i = 0; i < listed.count; i++) {
+        assert_true(draw_mesa(listed.v[i], i + 1));
+        assert_true(exact_corners_init(&corners[i], listed.v[i]));
+        if (listed.width[i]) assert_true(SIZE % listed.width[i] == 0 && SIZE % listed.height[i] == 0);
+    }
+    for (int y = 0; y < H; y++) {
+        for (int x = 0; x < W; x++) {
+            int shown = depth[y * W + x] != 0, core = seen_at[y][x].triangle, mesa = mesa_number(x, y) - 1;
+            if (shown != (mesa >= 0)) fail_msg("%s, pixel %d %d: the core %d, Mesa %d", sample.name, x, y, shown, mesa + 1);
+            if (!shown) continue;
+            seen->pixels++;
+            exact_forms f = exact_from_corners(&corners[mesa], x, y);
+            if (core != mesa) {
+                exact_forms own = exact_from_corners(&corners[core], x, y);
+                seen->other_triangle++;
+                seen->wrong += exact_depth_off(&f, depth[y * W + x], 1.0 / 256) > 1 ||
+                               exact_depth_off(&own, depth[y * W + x], 1.0 / 256) > 1;
+                continue;
+            }
+            int width = listed.width[core], height = listed.height[core];
+            if (!width) continue;
+            int u = seen_at[y][x].u >> 12 & (width - 1), v = seen_at[y][x].v >> 12 & (height - 1);
+            int mesa_u = image[y][x][0] & (width - 1), mesa_v = image[y][x][1] & (height - 1);
+            if (u == mesa_u && v == mesa_v) continue;
+            const double e = 1.0 / 64, near = 1.0 / 256, radius = 4 / 16.0 + near;
+            seen->other_texel++;
+            seen->wrong += exact_texel_radius(&f, &f.u, u, width, e) > radius ||
+                           exact_texel_radius(&f, &f.v, v, height, e) > radius ||
+                           exact_texel_radius(&f, &f.u, mesa_u, width, e) > near ||
+                           exact_texel_radius(&f, &f.v, mesa_v, height, e) > near;
+        }
+    }
+}
+
+static void sample_scenes(void **state)
+{
+    static const char *const names[] = { "courtyard", "crate" };
+    enum { POSES = 3 };
+    (void)state;
+    if (!mesa_start()) skip();
+    for (size_t s = 0; s < sizeof names / sizeof names[0]; s++) {
+        picture_seen picture = { 0 };
+        texels_seen texel = { 0 };
+        char text[64];
+        long triangles = 0;
+        open_sample(names[s]);
+        for (uint32_t pose = 0; pose < POSES; pose++) {
+            uint32_t time_ms = sample.scene.duration_ms * pose / POSES;
+            snprintf(text, sizeof text, "%s at %u ms", sample.name, (unsigned)time_ms);
+            draw_sample(time_ms);
+            triangles += listed.count;
+            compare_picture(&picture);
+            start(W, H, EW_RUNG_EXACT, 0);
+            compare_list(text);
+            start(W, H, EW_RUNG_AUTO, 4);
+            for (int i = 0; i < listed.count; i++) {
+                if (listed.width[i]) compare_texels(&texel, listed.v[i], W, H, 4);
+            }
+        }
+        texels_figure(sample.name, 4, &texel);
+        test_context("%s: %ld of %ld px wrong", sample.name, picture.wrong, picture.pixels);
+        cases_figure("Mesa pictures", sample.name, triangles, picture.pixels, picture.wrong,
+                     (double)(picture.other_texel + picture.other_triangle), "px of another texel or triangle");
+        assert_int_equal(picture.wrong, 0);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = { TEST(random_triangles), TEST(standard_scenes), TEST(nearest_texels) };
+    const struct CMUnitTest tests[] = { TEST(random_triangles), TEST(standard_scenes), TEST(nearest_texels),
+                                        TEST(sample_scenes) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
