@@ -18,10 +18,13 @@ EW_HOT uint64_t ew_mul_u32_pieces(uint32_t a, uint32_t b)
 
 int64_t ew_mul_s32_pieces(int32_t a, int32_t b)
 {
-    /* a = u - 2^32 for negative ones: b 2^32 less, modulo 2^64 */
-    uint64_t p = ew_mul_u32_pieces((uint32_t)a, (uint32_t)b);
-    uint32_t high = (uint32_t)(p >> 32) - (a < 0 ? (uint32_t)b : 0u) - (b < 0 ? (uint32_t)a : 0u);
-    return (int64_t)((uint64_t)high << 32 | (uint32_t)p);
+    /* the upper halves keep the sign, as in ew_mulh_s32_pieces */
+    int32_t ah = EW_ASR(a, 16), al = a & 0xFFFF, bh = EW_ASR(b, 16), bl = b & 0xFFFF;
+    uint32_t low = (uint32_t)al * (uint32_t)bl;
+    int32_t middle = ah * bl + (int32_t)(low >> 16);
+    int32_t other = al * bh + (middle & 0xFFFF);
+    uint32_t high = (uint32_t)(ah * bh + EW_ASR(middle, 16) + EW_ASR(other, 16));
+    return (int64_t)((uint64_t)high << 32 | ((uint32_t)other << 16 | (low & 0xFFFFu)));
 }
 
 ew_q16_16 ew_q16_16_mul(ew_q16_16 a, ew_q16_16 b)

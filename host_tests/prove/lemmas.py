@@ -146,27 +146,29 @@ def within_bits():
 def product_of_pieces():
     """ew_mul_u32_pieces and ew_mul_s32_pieces return the product: `ll` is al bl, `hl` ah bl, and so on."""
     wide, half = 2 ** 32, 2 ** 16
-    halves = declare("ah al bh bl", "Real") + between(0, "ah al bh bl", half - 1)
-    unsigned = (declare("ll hl lh hh") + between(0, "ll hl lh hh", (half - 1) ** 2) +
-                f"(define-fun middle () Int (+ hl (div ll {half})))(define-fun other () Int (+ lh (mod middle {half})))"
-                f"(define-fun high () Int (+ hh (div middle {half}) (div other {half})))"
-                f"(define-fun low () Int (+ (* {half} (mod other {half})) (mod ll {half})))")
-    cases = [case("QF_NRA", halves, refuted(f"(= (* (+ (* {half} ah) al) (+ (* {half} bh) bl)) (+ (* {wide} ah bh)"
-                                            f" (* {half} (+ (* ah bl) (* al bh))) (* al bl)))")),
-             case("QF_NRA", halves, refuted(f"(<= 0 (* al bl) {(half - 1) ** 2})")),
-             # no sum of 32 bits wraps, and together they are the product
-             case("QF_LIA", unsigned, refuted(f"(and (< middle {wide}) (< other {wide}) (< high {wide}))")),
-             case("QF_LIA", unsigned, refuted(f"(= (+ (* {wide} high) low) (+ (* {wide} hh) (* {half} (+ hl lh)) ll))")),
-             case("QF_NRA", declare("a b", "Real") + between(f"(- {wide // 2})", "a b", wide // 2),
-                  refuted(f"(<= (- {2 ** 62}) (* a b) {2 ** 62})"))]
-    for a_below in (0, 1):
-        for b_below in (0, 1):
-            # p is the unsigned product of a + 2^32 a_below and b + 2^32 b_below; the lowest 64 bits agree
-            cases.append(case("QF_LIA", declare("p ua ub"), between(0, "ua ub", wide - 1), between(0, "p", (wide - 1) ** 2),
-                              f"(define-fun high () Int (mod (- (div p {wide}) (* {a_below} ub) (* {b_below} ua)) {wide}))"
-                              f"(define-fun signed () Int (+ (- p (* {wide * a_below} ub) (* {wide * b_below} ua))"
-                              f" {wide * wide * a_below * b_below}))",
-                              refuted(f"(= 0 (mod (- (+ (* {wide} high) (mod p {wide})) signed) {wide * wide}))")))
+    cases = []
+    for below, most, lowest, highest in ((0, half - 1, "0", wide - 1),
+                                         (half // 2, half // 2 - 1, f"(- {wide // 2})", wide // 2 - 1)):
+        # of the upper halves, of one with a lower half, and of both; `below` is how far below 0 they may be
+        least, mixed, both = (f"(- {n})" for n in (below, below * (half - 1), below * most))
+        greatest = max(below, most) ** 2
+        halves = declare("ah al bh bl", "Real") + between(least, "ah bh", most) + between(0, "al bl", half - 1)
+        products = (declare("ll hl lh hh") + between(0, "ll", (half - 1) ** 2) +
+                    between(mixed, "hl lh", most * (half - 1)) + between(both, "hh", greatest) +
+                    f"(define-fun middle () Int (+ hl (div ll {half})))(define-fun other () Int (+ lh (mod middle {half})))"
+                    f"(define-fun high () Int (+ hh (div middle {half}) (div other {half})))"
+                    f"(define-fun low () Int (+ (* {half} (mod other {half})) (mod ll {half})))")
+        cases += [case("QF_NRA", halves, refuted(f"(= (* (+ (* {half} ah) al) (+ (* {half} bh) bl)) (+ (* {wide} ah bh)"
+                                                 f" (* {half} (+ (* ah bl) (* al bh))) (* al bl)))")),
+                  case("QF_NRA", halves, refuted(f"(<= 0 (* al bl) {(half - 1) ** 2})")),
+                  case("QF_NRA", halves, refuted(f"(<= {mixed} (* ah bl) {most * (half - 1)})")),
+                  case("QF_NRA", halves, refuted(f"(<= {both} (* ah bh) {greatest})")),
+                  # no sum of 32 bits wraps, and together they are the product
+                  case("QF_LIA", products, refuted("(and " + " ".join(
+                      f"(<= {lowest} {sum_} {highest})" for sum_ in ("middle", "other", "high")) + ")")),
+                  case("QF_LIA", products, refuted(f"(= (+ (* {wide} high) low) (+ (* {wide} hh) (* {half} (+ hl lh)) ll))"))]
+    cases.append(case("QF_NRA", declare("a b", "Real") + between(f"(- {wide // 2})", "a b", wide // 2),
+                      refuted(f"(<= (- {2 ** 62}) (* a b) {2 ** 62})")))
     return cases
 
 

@@ -75,11 +75,11 @@ typedef struct ew_corners {
 } ew_corners;
 
 /* Positions are within +-2^(17 + S), S = EW_SUBPIXEL_BITS <= 8, so differences are
- * within 2^26. */
+ * within 2^26. The machine code of arch.h knows the order. */
 typedef struct ew_edge {
     int32_t x;         /* first pixel at or right of the edge on the current row           */
-    int32_t step;      /* floor(dx / dy): what x grows by on each row, or by one more ...  */
-    int32_t remainder; /* ... whenever this, from -dy to -1, counts up to zero             */
+    int32_t remainder; /* from -dy to -1: whenever it counts up to zero, x grows by one more */
+    int32_t step;      /* floor(dx / dy): what x grows by on each row                      */
     int32_t rise;      /* dx - step dy, 0 <= rise < dy                                     */
     int32_t dy;
 } ew_edge;
@@ -191,6 +191,24 @@ typedef struct ew_packing {
     uint8_t is_256;        /* the texture is 256 x 256                                     */
 } ew_packing;
 
+/* Rows of packed planes on their way through the machine code of arch.h, which knows the order. */
+typedef struct ew_rows {
+    const uint16_t *texels; /* to `end`: as in ew_packing                                  */
+    uint32_t turn, mask;
+    uint32_t dhigh, dlow;
+    const uint16_t *rest, *end;
+    ew_edge *edge;
+    ew_plane32 *planes;
+    int32_t x0, x1;        /* the scissor's                                                */
+    uint32_t column;       /* that planes belong to                                        */
+    uint32_t lead, dw;     /* 1/z becomes depth by a shift; its step, uq1.31               */
+    uint16_t *depth;       /* the row's first pixel                                        */
+    uint32_t stride;       /* bytes                                                        */
+    uint32_t apart;        /* from a pixel's depth to its colour, bytes                    */
+    int32_t left;          /* rows                                                         */
+    uint32_t reached;      /* not 0: some pixel was                                        */
+} ew_rows;
+
 /* Where the next pixel goes, and 1/z there, uq1.31. */
 typedef struct ew_pen {
     uint16_t *colour, *depth;
@@ -274,6 +292,7 @@ typedef struct ew_span_work {
     uint8_t is_ready;  /* `by` and `limit` are those of all spans of the triangle          */
     union {
         ew_pen pen;
+        ew_rows rows;
         struct {
             ew_attribute_run attributes;
             ew_position position;

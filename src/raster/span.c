@@ -655,8 +655,7 @@ EW_HOT int ew_rows_of_texture(ew_raster *raster, ew_triangle *t, ew_edge *edge, 
             reached = 1;
         }
         planes_step(t, t->is_wide, 2);
-        ew_edge_step(&edge[0]);
-        ew_edge_step(&edge[1]);
+        ew_edges_step(edge);
     }
     return reached;
 }
@@ -705,6 +704,31 @@ void ew_planes_go(ew_triangle *t, uint32_t columns, uint32_t rows)
     }
 }
 
+#if EW_HAS_ROW_LOOP && !EW_TRACE
+EW_HOT int ew_rows_packed(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
+{
+    const ew_packing *k = &raster->work.packing;
+    ew_rows *rows = &raster->work.now.span.fill.rows;
+    const int32_t offset = (row - raster->target.first_row) * raster->target.stride; /* 2^24 at most */
+    if (row >= end) return 0;
+    rows->edge = edge;
+    rows->planes = t->plane.narrow;
+    rows->x0 = raster->scissor.x0, rows->x1 = raster->scissor.x1;
+    rows->column = t->column;
+    rows->lead = t->w_lead;
+    rows->dw = depth_step(t->plane.narrow[EW_PLANE_W].dx, t->w_lead);
+    rows->depth = raster->target.depth + offset;
+    rows->stride = raster->target.stride * 2u;
+    rows->apart = (uint32_t)((uintptr_t)raster->target.colour - (uintptr_t)raster->target.depth);
+    rows->texels = k->texels;
+    rows->turn = k->turn, rows->mask = k->mask;
+    rows->dhigh = t->plane.narrow[EW_PLANE_U].dx, rows->dlow = t->plane.narrow[EW_PLANE_V].dx;
+    rows->left = end - row;
+    rows->reached = 0;
+    ew_walk_rows(rows, k->is_256);
+    return rows->reached != 0;
+}
+#else
 EW_HOT int ew_rows_packed(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
 {
     ew_plane32 *p = t->plane.narrow;
@@ -724,11 +748,11 @@ EW_HOT int ew_rows_packed(ew_raster *raster, ew_triangle *t, ew_edge *edge, int3
         packed_add(&at, packed_dy(p));
         p[EW_PLANE_W].row += p[EW_PLANE_W].dy;
         p[EW_PLANE_U].row = at.high, p[EW_PLANE_V].row = at.low;
-        ew_edge_step(&edge[0]);
-        ew_edge_step(&edge[1]);
+        ew_edges_step(edge);
     }
     return reached;
 }
+#endif
 
 static void span_of_any(ew_raster *raster, int32_t x, int32_t y, int32_t n)
 {
@@ -759,8 +783,7 @@ EW_HOT int ew_rows_of_any(ew_raster *raster, int32_t row, int32_t end)
             span_of_any(raster, x, row, n);
             reached = 1;
         }
-        ew_edge_step(&edge[0]);
-        ew_edge_step(&edge[1]);
+        ew_edges_step(edge);
         planes_step(t, t->is_wide, t->attributes);
     }
     return reached;
