@@ -16,7 +16,8 @@ typedef struct triangle_case {
     uint8_t rung, tolerance;
     uint8_t flags, blend, filter;
     uint8_t texture_format, wrap, levels;
-    uint8_t target_format, dither;
+    uint8_t target_format;
+    uint8_t dither : 1, small : 1; /* small: many of a few pixels, in a scissor that cuts them on all sides */
 } triangle_case;
 
 /* Most are of the picture's size and many reach over its borders; near/z over a range of 32. */
@@ -34,7 +35,34 @@ static void any_corner(generator *g, ew_raster_vertex *corner)
     corner->colour.b = (uint8_t)(colour >> 16);
 }
 
-static uint32_t draw(const ew_target *picture, const ew_material *material)
+/* Up to 16 px a side, near/z over a factor of 2. */
+static void any_small(generator *g, ew_raster_vertex corner[3])
+{
+    const int32_t x = random_between(g, 0, 64 * INT32_C(4096)), y = random_between(g, 0, 48 * INT32_C(4096));
+    for (int k = 0; k < 3; k++) {
+        any_corner(g, &corner[k]);
+        corner[k].x = x + random_between(g, -8 * INT32_C(4096), 8 * INT32_C(4096));
+        corner[k].y = y + random_between(g, -8 * INT32_C(4096), 8 * INT32_C(4096));
+        corner[k].w = (UINT32_C(1) << 30) + random32(g) % (UINT32_C(1) << 30);
+    }
+}
+
+static int draw_small(uint16_t row)
+{
+    enum { COUNT = 300 };
+    const ew_rect scissor = { 5, (uint16_t)(row + 1), WIDTH - 7, (uint16_t)(row + BAND_ROWS - 2) };
+    generator g = { 88675123u };
+    int drawn = 0, result = ew_raster_set_scissor(&same_raster, &scissor);
+    for (int i = 0; i < COUNT && result >= 0; i++) {
+        ew_raster_vertex corner[3];
+        any_small(&g, corner);
+        result = ew_raster_triangle(&same_raster, &corner[0], &corner[1], &corner[2]);
+        drawn += result > 0;
+    }
+    return result < 0 || drawn < TRIANGLES ? -1 : 0;
+}
+
+static uint32_t draw(const ew_target *picture, const ew_material *material, int small)
 {
     static const uint8_t bits[] = { 16, 16, 8, 8, 4, 1 }; /* of a pixel, by ew_target_format */
     const uint32_t units = WIDTH * BAND_ROWS / 16 * bits[picture->format];
@@ -48,7 +76,11 @@ static uint32_t draw(const ew_target *picture, const ew_material *material)
         if (!result) result = ew_raster_set_material(&same_raster, material);
         if (!result) result = ew_raster_set_fog(&same_raster, 0xC618, UINT32_C(1) << 31, UINT32_C(1) << 27);
         ew_raster_clear(&same_raster, 0x18E3);
-        for (int i = 0; i < TRIANGLES; i++) {
+        if (small && result >= 0) {
+            result = draw_small(target.first_row);
+            drawn += TRIANGLES;
+        }
+        for (int i = 0; i < TRIANGLES && !small; i++) {
             ew_raster_vertex corner[3];
             for (int k = 0; k < 3; k++) any_corner(&g, &corner[k]);
             if (result >= 0) result = ew_raster_triangle(&same_raster, &corner[0], &corner[1], &corner[2]);
@@ -101,6 +133,12 @@ static const triangle_case cases[] = {
     { "all", .tolerance = 4, .flags = EW_SHADED | EW_FOG | EW_COLOUR_KEY, .blend = EW_BLEND_HALF,
       .filter = EW_FILTER_TRILINEAR, .wrap = EW_WRAP_MIRROR, .levels = LEVELS,
       .target_format = EW_TARGET_RGB565_SWAPPED, .dither = 1 },
+#if SAME_BITS_ROOM > 0 /* an AVR keeps this table in RAM */
+    { "small", .tolerance = 4, .small = 1 },
+    { "small-affine", .rung = EW_RUNG_AFFINE, .small = 1 },
+    { "small-exact", .rung = EW_RUNG_EXACT, .small = 1 },
+    { "small-shaded", .tolerance = 4, .flags = EW_SHADED, .small = 1 },
+#endif
 };
 
 void triangle_bits(void)
@@ -120,6 +158,6 @@ void triangle_bits(void)
                                        .tolerance = c->tolerance, .rung = c->rung,
                                        .flags = EW_DOUBLE_SIDED | c->flags,
                                        .blend = c->blend, .filter = c->filter };
-        print_hash("triangles", c->method, c->tolerance, "64x48", draw(&target, &material));
+        print_hash("triangles", c->method, c->tolerance, "64x48", draw(&target, &material, c->small));
     }
 }
