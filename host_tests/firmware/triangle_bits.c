@@ -134,10 +134,10 @@ static const triangle_case cases[] = {
       .filter = EW_FILTER_TRILINEAR, .wrap = EW_WRAP_MIRROR, .levels = LEVELS,
       .target_format = EW_TARGET_RGB565_SWAPPED, .dither = 1 },
 #if SAME_BITS_ROOM > 0 /* an AVR keeps this table in RAM */
-    { "small", .tolerance = 4, .small = 1 },
-    { "small-affine", .rung = EW_RUNG_AFFINE, .small = 1 },
-    { "small-exact", .rung = EW_RUNG_EXACT, .small = 1 },
-    { "small-shaded", .tolerance = 4, .flags = EW_SHADED, .small = 1 },
+    { "auto", .tolerance = 4, .small = 1 },
+    { "affine", .rung = EW_RUNG_AFFINE, .small = 1 },
+    { "exact", .rung = EW_RUNG_EXACT, .small = 1 },
+    { "shaded", .tolerance = 4, .flags = EW_SHADED, .small = 1 },
 #endif
 };
 
@@ -158,6 +158,6 @@ void triangle_bits(void)
                                        .tolerance = c->tolerance, .rung = c->rung,
                                        .flags = EW_DOUBLE_SIDED | c->flags,
                                        .blend = c->blend, .filter = c->filter };
-        print_hash("triangles", c->method, c->tolerance, "64x48", draw(&target, &material, c->small));
+        print_hash(c->small ? "small" : "triangles", c->method, c->tolerance, "64x48", draw(&target, &material, c->small));
     }
 }
