@@ -129,48 +129,77 @@ static ew_picture_work *work_init(const memory_plan *plan, const ew_picture *pic
 
 /* ---- sorting ---- */
 
-/* What the map has of a vertex while triangles are sorted: the row that it may begin, within those
- * that are drawn; that it has none; or nothing yet. */
+/* While triangles are listed, vertices pass through the memory that triangles will be kept in: a ring, where
+ * the next ones take the oldest ones' slots. There x and y are snapped, and w is the vertex's number. */
+static ew_screen_vertex *ring_of(const ew_picture_work *w) { return (ew_screen_vertex *)(void *)w->slots; }
+
+/* What the map has of a vertex meanwhile: its slot, below NO_SLOT. Once that is taken: NO_SLOT and the row that
+ * it may begin, within those that are drawn; or that it has none. Or nothing yet. */
+#define NO_SLOT UINT16_C(0x8000)
 #define NEAR UINT16_C(0xFFFF)
 #define UNKNOWN UINT16_C(0xFFFE)
 #define NOT_YET UINT16_C(0xFFFD)
 
-static uint16_t row_in_map(const ew_picture_work *w, const ew_screen_vertex *v)
+static void init_listing(ew_picture_work *w)
 {
-    if (v->outcode & EW_OUT_NEAR) return NEAR;
-    if (v->outcode & EW_OUT_GUARD) return UNKNOWN;
-    const int32_t row = ew_row_of(v->y);
-    return (uint16_t)(row < w->first ? w->first : row > w->end ? w->end : row);
+    const size_t slots = (size_t)(w->end_of_memory - w->rest) / sizeof(ew_screen_vertex);
+    w->slots = (ew_slot *)(void *)w->rest;
+    w->slot_count = slots < NO_SLOT ? (uint32_t)slots : NO_SLOT;
+    if (slots < EW_BATCH) {
+        w->slots = (ew_slot *)(void *)w->screen;
+        w->slot_count = EW_BATCH;
+    }
+    w->hand = 0;
+    for (uint32_t i = 0; i < w->slot_count; i++) ring_of(w)[i].w = EW_NO_VERTEX;
+    for (uint32_t i = 0; i < w->vertices; i++) w->map[i] = NOT_YET;
 }
 
-/* The memory that triangles will be kept in holds vertices while they are sorted, each in the one
- * slot that its number leads to. */
-static void init_sorting(ew_picture_work *w)
+/* What the map has of a vertex that is snapped, but in no slot. */
+static uint16_t without_slot(const ew_picture_work *w, int outcode, ew_snapped y)
 {
-    uint32_t slots = (uint32_t)((size_t)(w->end_of_memory - w->rest) / sizeof *w->slots);
-    while (slots & (slots - 1u)) slots &= slots - 1u;
-    w->slots = (ew_slot *)(void *)w->rest;
-    w->slot_count = slots;
-    for (uint32_t i = 0; i < slots; i++) w->slots[i].number = EW_NO_VERTEX;
-    for (uint32_t i = 0; i < w->vertices; i++) w->map[i] = NOT_YET;
+    if (outcode & EW_OUT_NEAR) return NEAR;
+    if (outcode & EW_OUT_GUARD) return UNKNOWN;
+    const int32_t row = ew_row_of_snapped(y);
+    return (uint16_t)(NO_SLOT | (row < w->first ? w->first : row > w->end ? w->end : row));
+}
+
+/* Takes the next n slots of the ring. */
+static ew_screen_vertex *take_slots(ew_picture_work *w, uint32_t n)
+{
+    ew_screen_vertex *const slot = ring_of(w) + w->hand;
+    for (uint32_t i = 0; i < n && slot[i].w != EW_NO_VERTEX; i++) {
+        w->map[slot[i].w] = without_slot(w, slot[i].outcode, slot[i].y);
+    }
+    w->hand += n;
+    if (w->hand == w->slot_count) w->hand = 0;
+    return slot;
+}
+
+/* How many vertices without a place in the map there are from map[0] on, of `most`. */
+static uint32_t count_new(const uint16_t *map, uint32_t most)
+{
+    uint32_t n = 1;
+    while (n < most && map[n] == NOT_YET) n++;
+    return n;
 }
 
 /* Transforms a vertex that no triangle had before, and others behind it, which are likely to come
  * next. */
 static EW_OWN_FRAME void transform_some(ew_picture_work *w, const ew_object *object, uint32_t vertex)
 {
-    uint16_t *map = w->map + w->first_vertex;
-    uint32_t n = 1;
-    while (n < EW_BATCH && vertex + n < object->vertex_count && map[vertex + n] == NOT_YET) n++;
-    ew_transform_vertices(&object->transform, &object->mesh.vertices[vertex], n, w->screen);
+    uint32_t number = w->first_vertex + vertex, at = w->hand, n = w->slot_count - at;
+    if (n > EW_BATCH) n = EW_BATCH;
+    if (n > object->vertex_count - vertex) n = object->vertex_count - vertex;
+    uint16_t *map = w->map + number;
+    n = count_new(map, n);
+    ew_screen_vertex *v = take_slots(w, n);
+    ew_transform_vertices(&object->transform, &object->mesh.vertices[vertex], n, v);
     w->counts->transformed += n;
-    for (uint32_t i = 0; i < n; i++, vertex++) {
-        const uint32_t number = w->first_vertex + vertex;
-        map[vertex] = row_in_map(w, &w->screen[i]);
-        if (!w->slot_count) continue;
-        ew_slot *slot = &w->slots[number & (w->slot_count - 1u)];
-        slot->vertex = w->screen[i];
-        slot->number = number;
+    for (const ew_screen_vertex *const end = v + n; v < end; v++) {
+        v->w = number++;
+        v->x = ew_snapped_from_q20_12(v->x);
+        v->y = ew_snapped_from_q20_12(v->y);
+        *map++ = (uint16_t)at++;
     }
 }
 
@@ -182,43 +211,75 @@ static inline void append(ew_picture_work *w, uint32_t number, int32_t first)
     w->entries[w->entry_count++] = number | band << EW_NUMBER_BITS;
 }
 
-/* The row that a triangle begins in, from those of its corners, or -1 when it covers no row. */
-static inline int32_t first_row_of(const ew_picture_work *w, uint16_t a, uint16_t b, uint16_t c)
+/* The row that a triangle begins in, from what the map would have of its corners without slots, or -1 when it
+ * covers no row. */
+static int32_t first_row_of(const ew_picture_work *w, uint16_t a, uint16_t b, uint16_t c)
 {
     uint16_t low = a < b ? a : b, high = a < b ? b : a;
     if (c < low) low = c;
     if (c > high) high = c;
-    if (high < NOT_YET) return low < high ? (int32_t)low : -1;
+    if (high < NOT_YET) return low < high ? (int32_t)(low - NO_SLOT) : -1;
     return low == NEAR || w->first >= w->end ? -1 : w->first;
 }
 
-/* Appends an object's triangles that may be seen, from w->number on. What hides them is looked at where
- * their vertices are at hand; the rest is seen to when they begin. Returns a vertex that has to be
+/* The same where some corner may be nowhere, or stands in no slot, from what the map has of them. */
+static EW_OWN_FRAME int32_t first_row_in_map(const ew_picture_work *w, uint16_t a, uint16_t b, uint16_t c)
+{
+    uint16_t row[3] = { a, b, c };
+    for (int k = 0; k < 3; k++) {
+        const ew_screen_vertex *v = &ring_of(w)[row[k]];
+        if (row[k] < NO_SLOT) row[k] = without_slot(w, v->outcode, v->y);
+    }
+    return first_row_of(w, row[0], row[1], row[2]);
+}
+
+/* The same where no corner is beyond the near plane or the guard band. */
+static inline int32_t first_row_between(const ew_picture_work *w, ew_snapped a, ew_snapped b, ew_snapped c)
+{
+    ew_snapped low = a < b ? a : b, high = a < b ? b : a;
+    if (c < low) low = c;
+    if (c > high) high = c;
+    int32_t first = ew_row_of_snapped(low), end = ew_row_of_snapped(high);
+    if (first < w->first) first = w->first;
+    if (end > w->end) end = w->end;
+    return first < end ? first : -1;
+}
+
+/* The row that a triangle begins in, from what the map has of its corners, or -1 for one that is surely not
+ * seen: what hides it is looked at where they are at hand, the rest is seen to when it begins. */
+static inline int32_t visible_from(const ew_picture_work *w, const ew_screen_vertex *ring, uint16_t a, uint16_t b, uint16_t c,
+                                   int both_sides)
+{
+    if ((a | b | c) & NO_SLOT) return first_row_in_map(w, a, b, c);
+    const ew_screen_vertex *va = &ring[a], *vb = &ring[b], *vc = &ring[c];
+    const int any = va->outcode | vb->outcode | vc->outcode;
+    if (any) {
+        const int all = va->outcode & vb->outcode & vc->outcode;
+        if (all & ~EW_OUT_GUARD) return -1;
+        if (any & (EW_OUT_NEAR | EW_OUT_GUARD)) return first_row_in_map(w, a, b, c);
+    }
+    if (!both_sides && !ew_product_less(vb->x - va->x, vc->y - va->y, vc->x - va->x, vb->y - va->y)) return -1; /* |d| <= 2^26 */
+    return first_row_between(w, va->y, vb->y, vc->y);
+}
+
+/* Appends an object's triangles that may be seen, from w->number on. Returns a vertex that has to be
  * transformed before it can go on, or EW_NO_VERTEX behind the last triangle. */
 static EW_OWN_FRAME uint32_t list_some(ew_picture_work *w, const ew_object *object)
 {
     const ew_mesh *mesh = &object->mesh;
-    const uint16_t *index = mesh->indices + (size_t)(w->number - w->first_triangle) * 3u;
-    const uint16_t *const end = mesh->indices + mesh->index_count, *map = w->map + w->first_vertex;
-    const ew_slot *const slots = w->slots;
-    const uint32_t mask = w->slot_count - 1u, first_vertex = w->first_vertex;
+    uint32_t number = w->number;
+    const uint16_t *index = mesh->indices + (size_t)(number - w->first_triangle) * 3u;
+    const uint16_t *const end = mesh->indices + mesh->index_count, *const map = w->map + w->first_vertex;
+    const ew_screen_vertex *const ring = ring_of(w);
     const int both_sides = object->material.flags & EW_DOUBLE_SIDED;
-    for (; index < end; index += 3) {
-        const uint32_t a = index[0], b = index[1], c = index[2];
-        if (map[a] == NOT_YET || map[b] == NOT_YET || map[c] == NOT_YET) {
-            w->number = w->first_triangle + (uint32_t)(index - mesh->indices) / 3u;
-            return map[a] == NOT_YET ? a : map[b] == NOT_YET ? b : c;
+    for (; index < end; index += 3, number++) {
+        const uint16_t a = map[index[0]], b = map[index[1]], c = map[index[2]];
+        if (a == NOT_YET || b == NOT_YET || c == NOT_YET) {
+            w->number = number;
+            return a == NOT_YET ? index[0] : b == NOT_YET ? index[1] : index[2];
         }
-        if (mask != UINT32_MAX) { /* first of all: half of a closed mesh is hidden */
-            const ew_slot *sa = &slots[(first_vertex + a) & mask], *sb = &slots[(first_vertex + b) & mask];
-            const ew_slot *sc = &slots[(first_vertex + c) & mask];
-            if (sa->number == first_vertex + a && sb->number == first_vertex + b && sc->number == first_vertex + c &&
-                ew_is_hidden(&sa->vertex, &sb->vertex, &sc->vertex, both_sides)) {
-                continue;
-            }
-        }
-        const int32_t first = first_row_of(w, map[a], map[b], map[c]);
-        if (first >= 0) append(w, w->first_triangle + (uint32_t)(index - mesh->indices) / 3u, first);
+        const int32_t first = visible_from(w, ring, a, b, c, both_sides);
+        if (first >= 0) append(w, number, first);
     }
     return EW_NO_VERTEX;
 }
@@ -230,14 +291,41 @@ static EW_OWN_FRAME void list_transformed(ew_picture_work *w, const ew_object *o
     const ew_screen_vertex *const screen = mesh->screen;
     const int both_sides = object->material.flags & EW_DOUBLE_SIDED;
     for (uint32_t i = 0; i < mesh->index_count; i += 3) {
-        const ew_screen_vertex *a = &screen[mesh->indices[i]], *b = &screen[mesh->indices[i + 1]], *c = &screen[mesh->indices[i + 2]];
-        const int32_t first = first_row_of(w, row_in_map(w, a), row_in_map(w, b), row_in_map(w, c));
-        if (first >= 0 && !ew_is_hidden(a, b, c, both_sides)) append(w, w->first_triangle + i / 3u, first);
+        uint16_t row[3];
+        const ew_screen_vertex *v[3];
+        for (uint32_t k = 0; k < 3; k++) {
+            v[k] = &screen[mesh->indices[i + k]];
+            row[k] = without_slot(w, v[k]->outcode, ew_snapped_from_q20_12(v[k]->y));
+        }
+        const int32_t first = first_row_of(w, row[0], row[1], row[2]);
+        if (first >= 0 && !ew_is_hidden(v[0], v[1], v[2], both_sides)) append(w, w->first_triangle + i / 3u, first);
     }
 }
 
+/* In numbers' order triangles are already: sorts them by band, where there is room behind the list for
+ * a copy and a count of each band. Returns whether there was. */
+static int sort_by_counting(ew_picture_work *w)
+{
+    const uint32_t count = w->entry_count, bands = w->bands;
+    uint32_t *const entries = w->entries, *const copy = entries + count;
+    if ((size_t)(w->end_of_memory - (uint8_t *)copy) / sizeof *copy < count + bands) return 0;
+    uint32_t *const place = copy + count;
+    for (uint32_t i = 0; i < bands; i++) place[i] = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        copy[i] = entries[i];
+        place[copy[i] >> EW_NUMBER_BITS]++;
+    }
+    for (uint32_t i = 0, next = 0; i < bands; i++) {
+        const uint32_t in_band = place[i];
+        place[i] = next;
+        next += in_band;
+    }
+    for (uint32_t i = 0; i < count; i++) entries[place[copy[i] >> EW_NUMBER_BITS]++] = copy[i];
+    return 1;
+}
+
 /* D. L. Shell, "A high-speed sorting procedure", 1959; steps by D. E. Knuth: (3^k - 1) / 2. */
-static void sort_entries(uint32_t *entries, uint32_t count)
+static void sort_in_place(uint32_t *entries, uint32_t count)
 {
     uint32_t step = 1;
     while (step < count / 3u) step = 3u * step + 1u;
@@ -254,7 +342,7 @@ static void sort_entries(uint32_t *entries, uint32_t count)
 /* Makes the list of triangles, and of what memory is left room for vertices and for kept ones. */
 static EW_OWN_FRAME void sort(ew_picture_work *w)
 {
-    init_sorting(w);
+    init_listing(w);
     w->first_triangle = w->first_vertex = 0;
     for (uint32_t i = 0; i < w->count; i++) {
         const ew_object *object = &w->objects[i];
@@ -264,7 +352,7 @@ static EW_OWN_FRAME void sort(ew_picture_work *w)
         w->first_triangle += object->mesh.index_count / 3u;
         if (!object->mesh.screen) w->first_vertex += object->vertex_count;
     }
-    sort_entries(w->entries, w->entry_count);
+    if (!sort_by_counting(w)) sort_in_place(w->entries, w->entry_count);
     ew_active_init(w);
 }
 

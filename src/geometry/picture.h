@@ -107,11 +107,12 @@ typedef struct ew_picture_work {
 } ew_picture_work;
 
 /* The first row whose centre is at or below y: where a triangle may begin. */
-static inline int32_t ew_row_of(ew_q20_12 y)
+static inline int32_t ew_row_of_snapped(ew_snapped y)
 {
     const int32_t half = 1 << (EW_SUBPIXEL_BITS - 1);
-    return EW_ASR(ew_snapped_from_q20_12(y) + half - 1, EW_SUBPIXEL_BITS);
+    return EW_ASR(y + half - 1, EW_SUBPIXEL_BITS);
 }
+static inline int32_t ew_row_of(ew_q20_12 y) { return ew_row_of_snapped(ew_snapped_from_q20_12(y)); }
 
 /* Whether nothing of the triangle of three vertices can be seen. */
 static inline int ew_is_hidden(const ew_screen_vertex *a, const ew_screen_vertex *b, const ew_screen_vertex *c, int both_sides)
