@@ -129,12 +129,16 @@ static ew_picture_work *work_init(const memory_plan *plan, const ew_picture *pic
 
 /* ---- sorting ---- */
 
+enum { BATCH = 24 };
+
 /* While triangles are listed, vertices pass through the memory that triangles will be kept in: a ring, where
  * the next ones take the oldest ones' slots. There x and y are snapped, and w is the vertex's number. */
 static ew_screen_vertex *ring_of(const ew_picture_work *w) { return (ew_screen_vertex *)(void *)w->slots; }
 
-/* What the map has of a vertex meanwhile: its slot, below NO_SLOT. Once that is taken: NO_SLOT and the row that
- * it may begin, within those that are drawn; or that it has none. Or nothing yet. */
+/* What the map has of a vertex meanwhile: its slot, below NOWHERE; or that and NOWHERE, beyond the near plane or
+ * the guard band. Once the slot is taken: NO_SLOT and the row that it may begin, within those that are drawn; or
+ * that it has none. Or nothing yet. */
+#define NOWHERE UINT16_C(0x4000)
 #define NO_SLOT UINT16_C(0x8000)
 #define NEAR UINT16_C(0xFFFF)
 #define UNKNOWN UINT16_C(0xFFFE)
@@ -144,10 +148,10 @@ static void init_listing(ew_picture_work *w)
 {
     const size_t slots = (size_t)(w->end_of_memory - w->rest) / sizeof(ew_screen_vertex);
     w->slots = (ew_slot *)(void *)w->rest;
-    w->slot_count = slots < NO_SLOT ? (uint32_t)slots : NO_SLOT;
-    if (slots < EW_BATCH) {
+    w->slot_count = slots < NOWHERE ? (uint32_t)slots : NOWHERE;
+    if (slots < EW_FEW) {
         w->slots = (ew_slot *)(void *)w->screen;
-        w->slot_count = EW_BATCH;
+        w->slot_count = EW_FEW;
     }
     w->hand = 0;
     for (uint32_t i = 0; i < w->slot_count; i++) ring_of(w)[i].w = EW_NO_VERTEX;
@@ -188,7 +192,7 @@ static uint32_t count_new(const uint16_t *map, uint32_t most)
 static EW_OWN_FRAME void transform_some(ew_picture_work *w, const ew_object *object, uint32_t vertex)
 {
     uint32_t number = w->first_vertex + vertex, at = w->hand, n = w->slot_count - at;
-    if (n > EW_BATCH) n = EW_BATCH;
+    if (n > BATCH) n = BATCH;
     if (n > object->vertex_count - vertex) n = object->vertex_count - vertex;
     uint16_t *map = w->map + number;
     n = count_new(map, n);
@@ -199,7 +203,8 @@ static EW_OWN_FRAME void transform_some(ew_picture_work *w, const ew_object *obj
         v->w = number++;
         v->x = ew_snapped_from_q20_12(v->x);
         v->y = ew_snapped_from_q20_12(v->y);
-        *map++ = (uint16_t)at++;
+        *map++ = (uint16_t)(v->outcode & (EW_OUT_NEAR | EW_OUT_GUARD) ? NOWHERE | at : at);
+        at++;
     }
 }
 
@@ -222,47 +227,37 @@ static int32_t first_row_of(const ew_picture_work *w, uint16_t a, uint16_t b, ui
     return low == NEAR || w->first >= w->end ? -1 : w->first;
 }
 
-/* The same where some corner may be nowhere, or stands in no slot, from what the map has of them. */
-static EW_OWN_FRAME int32_t first_row_in_map(const ew_picture_work *w, uint16_t a, uint16_t b, uint16_t c)
+/* Appends a triangle of which the map has this, unless it is surely not seen. */
+static EW_OWN_FRAME void append_unsure(ew_picture_work *w, uint32_t number, uint16_t a, uint16_t b, uint16_t c)
 {
     uint16_t row[3] = { a, b, c };
+    int all = (a | b | c) & NO_SLOT ? 0 : 0xFF;
     for (int k = 0; k < 3; k++) {
-        const ew_screen_vertex *v = &ring_of(w)[row[k]];
-        if (row[k] < NO_SLOT) row[k] = without_slot(w, v->outcode, v->y);
+        if (row[k] >= NO_SLOT) continue;
+        const ew_screen_vertex *v = ring_of(w) + row[k] % NOWHERE;
+        all &= v->outcode;
+        row[k] = without_slot(w, v->outcode, v->y);
     }
-    return first_row_of(w, row[0], row[1], row[2]);
+    const int32_t first = first_row_of(w, row[0], row[1], row[2]);
+    if (first >= 0 && !(all & ~EW_OUT_GUARD)) append(w, number, first);
 }
 
-/* The same where no corner is beyond the near plane or the guard band. */
-static inline int32_t first_row_between(const ew_picture_work *w, ew_snapped a, ew_snapped b, ew_snapped c)
+/* The same with three corners in the ring and somewhere. */
+static EW_OWN_FRAME void append_front(ew_picture_work *w, uint32_t number, const ew_screen_vertex *a, const ew_screen_vertex *b,
+                                      const ew_screen_vertex *c)
 {
-    ew_snapped low = a < b ? a : b, high = a < b ? b : a;
-    if (c < low) low = c;
-    if (c > high) high = c;
+    if (a->outcode & b->outcode & c->outcode) return;
+    ew_snapped low = a->y < b->y ? a->y : b->y, high = a->y < b->y ? b->y : a->y;
+    if (c->y < low) low = c->y;
+    if (c->y > high) high = c->y;
     int32_t first = ew_row_of_snapped(low), end = ew_row_of_snapped(high);
     if (first < w->first) first = w->first;
     if (end > w->end) end = w->end;
-    return first < end ? first : -1;
+    if (first < end) append(w, number, first);
 }
 
-/* The row that a triangle begins in, from what the map has of its corners, or -1 for one that is surely not
- * seen: what hides it is looked at where they are at hand, the rest is seen to when it begins. */
-static inline int32_t visible_from(const ew_picture_work *w, const ew_screen_vertex *ring, uint16_t a, uint16_t b, uint16_t c,
-                                   int both_sides)
-{
-    if ((a | b | c) & NO_SLOT) return first_row_in_map(w, a, b, c);
-    const ew_screen_vertex *va = &ring[a], *vb = &ring[b], *vc = &ring[c];
-    const int any = va->outcode | vb->outcode | vc->outcode;
-    if (any) {
-        const int all = va->outcode & vb->outcode & vc->outcode;
-        if (all & ~EW_OUT_GUARD) return -1;
-        if (any & (EW_OUT_NEAR | EW_OUT_GUARD)) return first_row_in_map(w, a, b, c);
-    }
-    if (!both_sides && !ew_product_less(vb->x - va->x, vc->y - va->y, vc->x - va->x, vb->y - va->y)) return -1; /* |d| <= 2^26 */
-    return first_row_between(w, va->y, vb->y, vc->y);
-}
-
-/* Appends an object's triangles that may be seen, from w->number on. Returns a vertex that has to be
+/* Appends an object's triangles that may be seen, from w->number on: what hides them is looked at where their
+ * vertices are at hand, the rest is seen to when they begin. Returns a vertex that has to be
  * transformed before it can go on, or EW_NO_VERTEX behind the last triangle. */
 static EW_OWN_FRAME uint32_t list_some(ew_picture_work *w, const ew_object *object)
 {
@@ -271,15 +266,21 @@ static EW_OWN_FRAME uint32_t list_some(ew_picture_work *w, const ew_object *obje
     const uint16_t *index = mesh->indices + (size_t)(number - w->first_triangle) * 3u;
     const uint16_t *const end = mesh->indices + mesh->index_count, *const map = w->map + w->first_vertex;
     const ew_screen_vertex *const ring = ring_of(w);
-    const int both_sides = object->material.flags & EW_DOUBLE_SIDED;
+    const int one_sided = !(object->material.flags & EW_DOUBLE_SIDED);
     for (; index < end; index += 3, number++) {
         const uint16_t a = map[index[0]], b = map[index[1]], c = map[index[2]];
-        if (a == NOT_YET || b == NOT_YET || c == NOT_YET) {
-            w->number = number;
-            return a == NOT_YET ? index[0] : b == NOT_YET ? index[1] : index[2];
+        if ((a | b | c) & (NO_SLOT | NOWHERE)) {
+            if (a == NOT_YET || b == NOT_YET || c == NOT_YET) {
+                w->number = number;
+                return a == NOT_YET ? index[0] : b == NOT_YET ? index[1] : index[2];
+            }
+            append_unsure(w, number, a, b, c);
+            continue;
         }
-        const int32_t first = visible_from(w, ring, a, b, c, both_sides);
-        if (first >= 0) append(w, number, first);
+        const ew_screen_vertex *va = &ring[a], *vb = &ring[b], *vc = &ring[c];
+        const int32_t x = va->x, y = va->y;
+        const int is_front = ew_product_less(vb->x - x, vc->y - y, vc->x - x, vb->y - y); /* |d| <= 2^26 */
+        if (is_front || !one_sided) append_front(w, number, va, vb, vc);
     }
     return EW_NO_VERTEX;
 }

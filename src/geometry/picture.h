@@ -38,7 +38,7 @@ typedef struct ew_slot {
     uint32_t number;
 } ew_slot;
 
-enum { EW_BATCH = 8 };
+enum { EW_FEW = 8 };
 
 /* ---- visible.c: EW_DEPTH_SPANS ---- */
 
@@ -103,7 +103,7 @@ typedef struct ew_picture_work {
     const ew_object *at;
     uint32_t behind;      /* the first triangle that is not the object's                    */
     uint32_t number;      /* the triangle at hand, its corners in `screen`                  */
-    ew_screen_vertex screen[EW_BATCH];
+    ew_screen_vertex screen[EW_FEW];
 } ew_picture_work;
 
 /* The first row whose centre is at or below y: where a triangle may begin. */
