@@ -258,6 +258,10 @@ void ew_raster_keep(ew_raster *raster, ew_active *active);
 /* Returns whether a pixel was reached. It is done when active->row is active->end. */
 int ew_raster_draw_active(ew_raster *raster, ew_active *active);
 
+/* The same for those of a list with a number below `number`, all of one material. From one scissor to the
+ * next, none of its rows may be left out. What is done is taken out of the list, to list->ended. */
+void ew_raster_draw_list(ew_raster *raster, ew_active_list *list, uint32_t number);
+
 /* The same row by row and column by column, for who finds out what is seen on a row and draws nothing
  * else: ew_raster_find_span says where the scissor's one row lies in its columns, ew_raster_draw_columns
  * draws columns of that, cut there as a scissor cuts, on a target without depth; both as often as it

@@ -6,6 +6,7 @@
 #ifndef EW_RASTER_WORK_H
 #define EW_RASTER_WORK_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 #include "fixed.h"
@@ -88,13 +89,33 @@ typedef struct ew_edge {
 typedef struct ew_active {
     uint32_t number;             /* for whoever keeps it, as `next` and `seen`               */
     uint16_t next;
-    uint16_t row, end, turn;     /* the next row to draw, and those of ew_corners           */
+    uint16_t row, end, turn;     /* the next row to draw, and those of ew_corners: with
+                                    ew_raster_draw_list row may be one that is drawn        */
     uint8_t longest;             /* likewise                                                */
-    uint16_t seen;
+    union {
+        uint16_t seen;
+        uint16_t quick; /* ew_raster_draw_list: it stands on the scissor's first row, and down to this
+                           one no edge changes and it does not end; 0: it may not            */
+    } at;
     ew_snapped x[2], y[2];       /* the middle and the lowest corner                        */
     ew_edge edge[2];             /* left, right                                             */
     ew_triangle triangle;
 } ew_active;
+
+/* Active triangles in memory of the caller's, in the order of drawing: each is found by its place, in
+ * units of 8 bytes, and leads to the next; EW_NO_PLACE behind the last. */
+#define EW_NO_PLACE UINT16_C(0xFFFF)
+enum { EW_PLACE_BYTES = 8 };
+typedef struct ew_active_list {
+    uint8_t *places;
+    uint16_t *link;  /* what leads to the next that is to be drawn                         */
+    uint16_t ended;  /* the first of those that were taken out                             */
+} ew_active_list;
+
+static inline ew_active *ew_active_in(const ew_active_list *list, uint16_t place)
+{
+    return (ew_active *)(void *)(list->places + (size_t)place * EW_PLACE_BYTES);
+}
 
 /* Columns of a triangle's next row: from <= x < to. 1/z of pixel x, uq1.31 times 2^(31 + lead), is
  * w + x dw modulo 2^64, as a signed number. */

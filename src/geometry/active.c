@@ -32,8 +32,9 @@ void ew_active_init(ew_picture_work *w)
         w->slots[i].vertex.y = -EW_GUARD_PX * 4096; /* above everything */
         w->slots[i].number = EW_NO_VERTEX;
     }
-    w->places = (uint8_t *)(w->slots + (w->slot_count + 1u) / 2u * 2u);
-    init_places(w, (size_t)(w->end_of_memory - w->places));
+    w->list.places = (uint8_t *)(w->slots + (w->slot_count + 1u) / 2u * 2u);
+    w->list.ended = EW_NO_PLACE;
+    init_places(w, (size_t)(w->end_of_memory - w->list.places));
 }
 
 /* The first gap that is large enough gives its end. */
@@ -97,7 +98,7 @@ static ew_place *keep(ew_picture_work *w, ew_place *link)
     ew_active *active = &ew_kept_at(w, place)->active;
     ew_raster_keep(w->geometry->raster, active);
     active->number = w->number;
-    active->seen = EW_NOT_SEEN;
+    if (EW_WITH_SPANS && w->row) active->at.seen = EW_NOT_SEEN;
     active->next = *link;
     *link = place;
     w->active++;
@@ -124,32 +125,40 @@ static void take_slot(ew_picture_work *w, uint32_t number, const ew_screen_verte
     }
 }
 
-/* Corner k of the triangle at hand, to w->screen. */
-static EW_OWN_FRAME void fetch(ew_picture_work *w, int k)
+static EW_OWN_FRAME void fetch_anew(ew_picture_work *w, uint16_t vertex, ew_screen_vertex *out)
 {
-    const ew_object *object = w->at;
-    const uint16_t vertex = object->mesh.indices[(size_t)(w->number - w->first_triangle) * 3u + (unsigned)k];
-    ew_screen_vertex *out = &w->screen[k];
-    if (object->mesh.screen) {
-        *out = object->mesh.screen[vertex];
-        return;
-    }
-    const uint32_t number = w->first_vertex + vertex;
-    const uint16_t at = w->map[number];
-    if (at < w->slot_count && w->slots[at].number == number) {
-        *out = w->slots[at].vertex;
-        return;
-    }
-    ew_transform_vertices(&object->transform, &object->mesh.vertices[vertex], 1, out);
+    ew_transform_vertices(&w->at->transform, &w->at->mesh.vertices[vertex], 1, out);
     w->counts->transformed++;
-    take_slot(w, number, out);
+    take_slot(w, w->first_vertex + vertex, out);
+}
+
+static const uint16_t *corners_of(const ew_picture_work *w)
+{
+    return w->at->mesh.indices + (size_t)(w->number - w->first_triangle) * 3u;
+}
+
+/* Corners of the triangle at hand, to w->screen. */
+static EW_OWN_FRAME void fetch(ew_picture_work *w)
+{
+    const ew_screen_vertex *const screen = w->at->mesh.screen;
+    const uint16_t *index = corners_of(w);
+    for (ew_screen_vertex *out = w->screen, *const end = out + 3; out < end; out++, index++) {
+        if (screen) {
+            *out = screen[*index];
+            continue;
+        }
+        const uint32_t number = w->first_vertex + *index;
+        const uint16_t at = w->map[number];
+        if (at < w->slot_count && w->slots[at].number == number) *out = w->slots[at].vertex;
+        else fetch_anew(w, *index, out);
+    }
 }
 
 /* ---- triangles ---- */
 
-/* Makes a triangle and its object the ones at hand: numbers grow within a band. Returns EW_OK or an
- * error of the raster's. */
-static EW_OWN_FRAME int go_to(ew_picture_work *w, uint32_t number)
+/* Makes a triangle's object the one at hand: numbers grow within a band. Returns EW_OK or an error of the
+ * raster's. */
+static EW_OWN_FRAME int go_on(ew_picture_work *w, uint32_t number)
 {
     const ew_object *object = &w->objects[w->object];
     while (number - w->first_triangle >= object->mesh.index_count / 3u) {
@@ -157,13 +166,19 @@ static EW_OWN_FRAME int go_to(ew_picture_work *w, uint32_t number)
         if (!object->mesh.screen) w->first_vertex += object->vertex_count;
         object = &w->objects[++w->object];
     }
-    w->number = number;
     w->at = object;
     w->behind = w->first_triangle + object->mesh.index_count / 3u;
     if (w->used == w->object) return EW_OK;
     w->used = w->object;
     for (int k = 0; k < 3; k++) w->geometry->corner[k].colour = ew_white; /* without colours in the mesh they stay */
     return ew_raster_set_material(w->geometry->raster, &object->material);
+}
+
+/* The same for the triangle itself. */
+static inline int go_to(ew_picture_work *w, uint32_t number)
+{
+    w->number = number;
+    return number < w->behind ? EW_OK : go_on(w, number);
 }
 
 /* What becomes of a triangle in the band at hand: there is nothing to be drawn; it is kept, to be drawn next;
@@ -183,7 +198,7 @@ static int begin(ew_picture_work *w)
 /* Each triangle of a clipped one's fan: all of them are kept, or none. */
 static EW_OWN_FRAME int keep_fan(ew_picture_work *w)
 {
-    ew_place *const link = w->kept_link, *to = link;
+    ew_place *const link = w->list.link, *to = link;
     const ew_place behind = *link;
     while (ew_clip_next(w->geometry)) {
         const int result = begin(w);
@@ -220,12 +235,14 @@ static EW_OWN_FRAME int clipped(ew_picture_work *w, const uint16_t *index)
  * next_of_fan. */
 static EW_OWN_FRAME int make_ready(ew_picture_work *w)
 {
-    const ew_object *object = w->at;
-    const ew_mesh *mesh = &object->mesh;
-    const uint16_t *index = mesh->indices + (size_t)(w->number - w->first_triangle) * 3u;
+    const ew_mesh *mesh = &w->at->mesh;
+    const uint16_t *index = corners_of(w);
     const ew_screen_vertex *const s = w->screen;
-    if (ew_is_hidden(&s[0], &s[1], &s[2], object->material.flags & EW_DOUBLE_SIDED)) return DONE;
-    if ((s[0].outcode | s[1].outcode | s[2].outcode) & (EW_OUT_NEAR | EW_OUT_GUARD)) return clipped(w, index);
+    const int any = s[0].outcode | s[1].outcode | s[2].outcode;
+    if (any) { /* one that faces away is seen to by the raster */
+        if (s[0].outcode & s[1].outcode & s[2].outcode & ~EW_OUT_GUARD) return DONE;
+        if (any & (EW_OUT_NEAR | EW_OUT_GUARD)) return clipped(w, index);
+    }
 
     const int32_t uv_unit = (int32_t)1 << (12 - mesh->uv_fraction_bits);
     ew_raster_vertex *const v = w->geometry->corner;
@@ -245,7 +262,7 @@ static EW_OWN_FRAME int start(ew_picture_work *w)
     if (result == DRAW) result = begin(w);
     if (result <= 0) return result;
     if (!w->row && ew_raster_begun_end(w->geometry->raster) <= w->bottom) return DRAW;
-    return keep(w, w->kept_link) ? KEPT : DRAW_LATE;
+    return keep(w, w->list.link) ? KEPT : DRAW_LATE;
 }
 
 /* ---- a band ---- */
@@ -265,7 +282,7 @@ static uint32_t number_of_next(const ew_picture_work *w)
 }
 
 /* Takes a late triangle, or else the next to begin, out of its list. */
-static EW_OWN_FRAME int take(ew_picture_work *w, uint32_t number, int is_late)
+static inline int take(ew_picture_work *w, uint32_t number, int is_late)
 {
     if (is_late) {
         w->late_next++;
@@ -304,24 +321,32 @@ static void merge_late(ew_picture_work *w)
     }
 }
 
+/* Gives back the places of those that ended. */
+static void give_ended(ew_picture_work *w)
+{
+    ew_place place = w->list.ended;
+    while (place != EW_NO_PLACE) {
+        const ew_active *active = &ew_kept_at(w, place)->active;
+        const ew_place next = active->next;
+        give_places(w, place, places_of(&active->triangle));
+        w->active--;
+        place = next;
+    }
+    w->list.ended = EW_NO_PLACE;
+}
+
 /* Draws what was kept of triangles before `number`. Returns EW_OK or an error. */
 static inline int draw_kept(ew_picture_work *w, uint32_t number)
 {
-    ew_place *link = w->kept_link;
-    ew_raster *raster = w->geometry->raster;
-    while (*link != EW_NO_PLACE) {
-        ew_active *active = &ew_kept_at(w, *link)->active;
-        if (active->number >= number) break;
-        if (active->number >= w->behind) {
-            const int error = go_to(w, active->number);
-            if (error) return error;
-        }
-        ew_raster_draw_active(raster, active);
-        if (active->row < active->end) link = &active->next;
-        else drop(w, link);
+    for (;;) {
+        ew_raster_draw_list(w->geometry->raster, &w->list, number < w->behind ? number : w->behind);
+        give_ended(w);
+        if (*w->list.link == EW_NO_PLACE) return EW_OK;
+        const uint32_t next = ew_kept_at(w, *w->list.link)->active.number;
+        if (next >= number) return EW_OK;
+        const int error = go_on(w, next);
+        if (error) return error;
     }
-    w->kept_link = link;
-    return EW_OK;
 }
 
 /* Starts the next triangle before which no kept one comes, `number`. */
@@ -329,19 +354,22 @@ static EW_OWN_FRAME int start_next(ew_picture_work *w, uint32_t number, int is_l
 {
     const int error = take(w, number, is_late);
     if (error) return error;
-    for (int i = 0; i < 3; i++) fetch(w, i);
+    fetch(w);
     const int result = start(w);
     if (result >= DRAW_LATE) put_late(w, is_late);
     return result;
 }
 
 /* Back to the first object. */
-static void start_over(ew_picture_work *w) { w->object = w->first_triangle = w->first_vertex = w->behind = 0; }
+static void start_over(ew_picture_work *w)
+{
+    if (w->object) w->object = w->first_triangle = w->first_vertex = w->behind = 0;
+}
 
 int ew_draw_band(ew_picture_work *w)
 {
     int result = EW_OK;
-    w->kept_link = &w->kept;
+    w->list.link = &w->kept;
     start_late(w);
     start_over(w);
     while (result >= 0) {
@@ -367,7 +395,7 @@ int ew_draw_band(ew_picture_work *w)
 /* Shows what was kept of triangles before `number`. */
 static void show_kept(ew_picture_work *w, uint32_t number)
 {
-    ew_place *link = w->kept_link;
+    ew_place *link = w->list.link;
     uint32_t before = EW_NO_TRIANGLE;
     unsigned part = 0;
     while (*link != EW_NO_PLACE) {
@@ -378,7 +406,7 @@ static void show_kept(ew_picture_work *w, uint32_t number)
         ew_show(w, active, *link, part);
         link = &active->next;
     }
-    w->kept_link = link;
+    w->list.link = link;
 }
 
 /* Shows what was kept of triangles before the next that is not, and returns the number of that. */
@@ -410,7 +438,7 @@ static EW_OWN_FRAME int show_late(ew_picture_work *w, int how)
 
 static EW_OWN_FRAME void start_showing(ew_picture_work *w)
 {
-    w->kept_link = &w->kept;
+    w->list.link = &w->kept;
     start_late(w);
     start_over(w);
 }
@@ -468,7 +496,7 @@ int ew_draw_late(ew_picture_work *w)
         result = go_to(w, w->entries[i]);
         if (result) break;
         w->counts->again++;
-        for (int k = 0; k < 3; k++) fetch(w, k);
+        fetch(w);
         result = make_ready(w);
         if (result == DRAW && (result = begin(w)) > 0) draw_begun(w, 0);
         else if (result == DRAW_FAN) for (unsigned part = 0; (result = next_of_fan(w)) > 0; part++) draw_begun(w, part);
@@ -483,15 +511,15 @@ int ew_draw_seen(ew_picture_work *w)
     for (ew_place place = w->kept; place != EW_NO_PLACE;) {
         ew_active *active = &ew_kept_at(w, place)->active;
         place = active->next;
-        if (active->seen == EW_NOT_SEEN) continue;
+        if (active->at.seen == EW_NOT_SEEN) continue;
         if (active->number >= w->behind) {
-            const int error = go_to(w, active->number);
+            const int error = go_on(w, active->number);
             if (error) return error;
         }
-        while (active->seen != EW_NOT_SEEN) {
-            const ew_active_span *span = &row->seen[active->seen].span;
+        while (active->at.seen != EW_NOT_SEEN) {
+            const ew_active_span *span = &row->seen[active->at.seen].span;
             ew_raster_draw_columns(w->geometry->raster, active, span->from, span->to);
-            ew_forget(row, &active->seen);
+            ew_forget(row, &active->at.seen);
         }
     }
     return EW_OK;

@@ -129,7 +129,7 @@ static ew_picture_work *work_init(const memory_plan *plan, const ew_picture *pic
 
 /* ---- sorting ---- */
 
-enum { BATCH = 24 };
+enum { BATCH = 16 };
 
 /* While triangles are listed, vertices pass through the memory that triangles will be kept in: a ring, where
  * the next ones take the oldest ones' slots. There x and y are snapped, and w is the vertex's number. */
@@ -353,6 +353,7 @@ static EW_OWN_FRAME void sort(ew_picture_work *w)
         w->first_triangle += object->mesh.index_count / 3u;
         if (!object->mesh.screen) w->first_vertex += object->vertex_count;
     }
+    w->first_triangle = w->first_vertex = w->behind = 0;
     if (!sort_by_counting(w)) sort_in_place(w->entries, w->entry_count);
     ew_active_init(w);
 }

@@ -18,10 +18,8 @@ enum { EW_NUMBER_BITS = 20 };
 #define EW_NO_TRIANGLE EW_NUMBER_MASK
 #define EW_NO_VERTEX UINT32_MAX
 
-/* A place among the kept ones: 8 bytes each, or none. */
+/* A place among the kept ones, or none: ew_active_list. */
 typedef uint16_t ew_place;
-#define EW_NO_PLACE UINT16_C(0xFFFF)
-enum { EW_PLACE_BYTES = 8 };
 
 /* What stands in a place: a kept triangle, or a gap with the next one behind it. */
 typedef union ew_kept {
@@ -89,14 +87,13 @@ typedef struct ew_picture_work {
     ew_row_work *row;     /* NULL but for EW_DEPTH_SPANS                                     */
     ew_slot *slots;
     uint32_t slot_count, hand; /* hand: where a slot was taken last                         */
-    uint8_t *places;      /* multiples of 8 bytes                                           */
     /* Lists. Late ones stand in the entries' place once these were taken: those of earlier bands
      * first, then, from late_begun on, those that the band at hand has added. */
     uint32_t entry_count, next;
     uint32_t late_count, late_next, late_left; /* of earlier bands: read up to, left so far      */
     uint32_t late_begun, late_new;
     ew_place kept, gaps;
-    ew_place *kept_link;  /* what leads to the one that a band has come to                  */
+    ew_active_list list;  /* its link leads to the one that a band has come to              */
     uint32_t active;      /* how many are kept or late                                      */
     /* The object at hand, by number, and the one whose material the raster has. */
     uint32_t object, first_triangle, first_vertex, used;
@@ -124,7 +121,7 @@ static inline int ew_is_hidden(const ew_screen_vertex *a, const ew_screen_vertex
 
 static inline ew_kept *ew_kept_at(const ew_picture_work *w, ew_place place)
 {
-    return (ew_kept *)(void *)(w->places + (size_t)place * EW_PLACE_BYTES);
+    return (ew_kept *)(void *)ew_active_in(&w->list, place);
 }
 
 /* ---- active.c ---- */

@@ -199,7 +199,7 @@ static EW_OWN_FRAME void share_out(ew_picture_work *w)
             ew_forget(row, &s->span.next);
         }
         if (s->span.to == row->to && row->to < end_of_row(w)) return;
-        uint16_t *link = s->place == EW_NO_PLACE ? &row->late_first : &ew_kept_at(w, s->place)->active.seen;
+        uint16_t *link = s->place == EW_NO_PLACE ? &row->late_first : &ew_kept_at(w, s->place)->active.at.seen;
         const uint16_t i = row->first;
         row->first = s->span.next;
         s->span.next = *link;

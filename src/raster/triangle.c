@@ -163,30 +163,44 @@ size_t ew_active_bytes(const ew_triangle *t)
 
 static void copy_planes(ew_triangle *to, const ew_triangle *from)
 {
-    for (int i = 0; i <= from->attributes; i++) {
-        if (from->is_wide) to->plane.wide[i] = from->plane.wide[i];
-        else to->plane.narrow[i] = from->plane.narrow[i];
+    if (from->attributes != 2) {
+        for (int i = 0; i <= from->attributes; i++) {
+            if (from->is_wide) to->plane.wide[i] = from->plane.wide[i];
+            else to->plane.narrow[i] = from->plane.narrow[i];
+        }
+    } else if (from->is_wide) {
+        EW_COPY_WORDS(to->plane.wide, from->plane.wide, 3 * sizeof *to->plane.wide);
+    } else {
+        EW_COPY_WORDS(to->plane.narrow, from->plane.narrow, 3 * sizeof *to->plane.narrow);
     }
+}
+
+static uint16_t quick_until(const ew_active *active, int32_t row)
+{
+    const int32_t last = active->end - 1;
+    if (active->triangle.walk == WALK_ANY) return 0;
+    return (uint16_t)(row <= active->turn ? smaller(active->turn, last) : last);
 }
 
 void ew_raster_keep(ew_raster *raster, ew_active *active)
 {
     const ew_corners *k = &raster->work.corners;
+    const ew_triangle *t = &raster->work.triangle;
+    const ew_snapped *x = k->x, *y = k->y;
     const int32_t first = k->first;
+    const unsigned top = k->top, middle = k->middle, bottom = k->bottom, longest = k->longest;
     active->row = (uint16_t)first;
     active->turn = (uint16_t)k->turn;
     active->end = (uint16_t)k->end;
-    active->longest = k->longest;
-    active->x[0] = k->x[k->middle], active->y[0] = k->y[k->middle];
-    active->x[1] = k->x[k->bottom], active->y[1] = k->y[k->bottom];
-    start_edge(raster, k->longest, k->top, k->bottom, first);
-    if (first < k->turn) start_edge(raster, !k->longest, k->top, k->middle, first);
-    active->edge[0] = raster->work.edge[0];
-    active->edge[1] = raster->work.edge[1];
-    const ew_triangle *t = &raster->work.triangle;
-    EW_COPY(&active->triangle, t, HEAD_BYTES);
+    active->longest = (uint8_t)longest;
+    active->x[0] = x[middle], active->y[0] = y[middle];
+    active->x[1] = x[bottom], active->y[1] = y[bottom];
+    ew_edge_start(&active->edge[longest], x[top], y[top], x[bottom], y[bottom], first);
+    if (first < k->turn) ew_edge_start(&active->edge[!longest], x[top], y[top], x[middle], y[middle], first);
+    EW_COPY_WORDS(&active->triangle, t, HEAD_BYTES);
     copy_planes(&active->triangle, t);
     if (t->walk == WALK_ANY) EW_COPY((uint8_t *)&active->triangle.plane + plane_bytes(t), &t->u_origin, TAIL_BYTES);
+    active->at.quick = first == raster->scissor.y0 ? quick_until(active, first) : 0;
 }
 
 /* Generic fills only know work.triangle. Copying has frames of its own: it needs many registers. */
@@ -222,11 +236,8 @@ EW_NOINLINE void start_lowest_edge(ew_active *active)
 }
 
 /* To a row on which edges change, or above. */
-EW_NOINLINE int draw_part(ew_raster *raster, ew_active *active, int32_t end)
+static int draw_part(ew_raster *raster, ew_active *active, int32_t row, int32_t end)
 {
-    const int32_t row = active->row;
-    active->row = (uint16_t)end;
-    if (row == active->turn) start_lowest_edge(active);
     if (active->triangle.walk != WALK_ANY) return draw_quick(raster, &active->triangle, active->edge, row, end);
     copy_to_work(raster, active);
     const int reached = ew_rows_of_any(raster, row, end);
@@ -236,15 +247,44 @@ EW_NOINLINE int draw_part(ew_raster *raster, ew_active *active, int32_t end)
 
 int ew_raster_draw_active(ew_raster *raster, ew_active *active)
 {
-    const int32_t end = smaller(active->end, raster->scissor.y1), row = active->row, turn = active->turn;
-    if (row >= end) return 0;
-    if (active->triangle.walk != WALK_ANY && (row > turn || end <= turn)) {
-        active->row = (uint16_t)end;
-        return draw_quick(raster, &active->triangle, active->edge, row, end);
-    }
+    const int32_t end = smaller(active->end, raster->scissor.y1), turn = active->turn;
+    int32_t row = larger(active->row, raster->scissor.y0);
     int reached = 0;
-    if (row < turn && turn < end) reached = draw_part(raster, active, turn);
-    return draw_part(raster, active, end) | reached;
+    if (row >= end) return 0;
+    if (row < turn && turn < end) {
+        reached = draw_part(raster, active, row, turn);
+        row = turn;
+    }
+    if (row == turn) start_lowest_edge(active);
+    reached |= draw_part(raster, active, row, end);
+    active->row = (uint16_t)end;
+    active->at.quick = quick_until(active, end);
+    return reached;
+}
+
+void ew_raster_draw_list(ew_raster *raster, ew_active_list *list, uint32_t number)
+{
+    const int32_t row = raster->scissor.y0, end = raster->scissor.y1;
+    const ew_active_list in = *list; /* so that it stays in registers */
+    uint16_t *link = in.link;
+    while (*link != EW_NO_PLACE) {
+        ew_active *active = ew_active_in(&in, *link);
+        if (active->number >= number) break;
+        if (end <= active->at.quick) {
+            draw_quick(raster, &active->triangle, active->edge, row, end);
+        } else {
+            ew_raster_draw_active(raster, active);
+            if (active->row >= active->end) {
+                const uint16_t place = *link;
+                *link = active->next;
+                active->next = list->ended;
+                list->ended = place;
+                continue;
+            }
+        }
+        link = &active->next;
+    }
+    list->link = link;
 }
 
 /* ---- some columns at a time ---- */
