@@ -224,7 +224,7 @@ static int32_t first_row_of(const ew_picture_work *w, uint16_t a, uint16_t b, ui
     if (c < low) low = c;
     if (c > high) high = c;
     if (high < NOT_YET) return low < high ? (int32_t)(low - NO_SLOT) : -1;
-    return low == NEAR || w->first >= w->end ? -1 : w->first;
+    return low == NEAR ? -1 : w->first;
 }
 
 /* Appends a triangle of which the map has this, unless it is surely not seen. */
@@ -340,11 +340,10 @@ static void sort_in_place(uint32_t *entries, uint32_t count)
     }
 }
 
-/* Makes the list of triangles, and of what memory is left room for vertices and for kept ones. */
-static EW_OWN_FRAME void sort(ew_picture_work *w)
+/* Appends what may be seen. */
+static EW_OWN_FRAME void list(ew_picture_work *w)
 {
     init_listing(w);
-    w->first_triangle = w->first_vertex = 0;
     for (uint32_t i = 0; i < w->count; i++) {
         const ew_object *object = &w->objects[i];
         w->number = w->first_triangle;
@@ -353,7 +352,14 @@ static EW_OWN_FRAME void sort(ew_picture_work *w)
         w->first_triangle += object->mesh.index_count / 3u;
         if (!object->mesh.screen) w->first_vertex += object->vertex_count;
     }
+}
+
+/* Makes the list of triangles, and of what memory is left room for vertices and for kept ones. */
+static EW_OWN_FRAME void sort(ew_picture_work *w)
+{
     w->first_triangle = w->first_vertex = w->behind = 0;
+    if (w->first < w->end) list(w);
+    w->first_triangle = w->first_vertex = 0;
     if (!sort_by_counting(w)) sort_in_place(w->entries, w->entry_count);
     ew_active_init(w);
 }
