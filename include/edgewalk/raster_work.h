@@ -92,6 +92,7 @@ typedef struct ew_active {
     uint16_t row, end, turn;     /* the next row to draw, and those of ew_corners: with
                                     ew_raster_draw_list row may be one that is drawn        */
     uint8_t longest;             /* likewise                                                */
+    uint8_t places;              /* for whoever keeps it: what it takes                     */
     union {
         uint16_t seen;
         uint16_t quick; /* ew_raster_draw_list: it stands on the scissor's first row, and down to this

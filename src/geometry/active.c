@@ -76,14 +76,12 @@ static void give_places(ew_picture_work *w, ew_place place, uint16_t places)
     }
 }
 
-static uint16_t places_of(const ew_triangle *t) { return (uint16_t)(ew_active_bytes(t) / EW_PLACE_BYTES); }
-
 /* Takes the kept triangle out that *link leads to. */
 static void drop(ew_picture_work *w, ew_place *link)
 {
     const ew_place place = *link;
     const ew_active *active = &ew_kept_at(w, place)->active;
-    const uint16_t places = places_of(&active->triangle);
+    const uint16_t places = active->places;
     *link = active->next;
     give_places(w, place, places);
     w->active--;
@@ -93,11 +91,13 @@ static void drop(ew_picture_work *w, ew_place *link)
  * or NULL where there is no room. */
 static ew_place *keep(ew_picture_work *w, ew_place *link)
 {
-    const ew_place place = take_places(w, places_of(&w->geometry->raster->work.triangle));
+    const uint16_t places = (uint16_t)(ew_active_bytes(&w->geometry->raster->work.triangle) / EW_PLACE_BYTES); /* <= 35 */
+    const ew_place place = take_places(w, places);
     if (place == EW_NO_PLACE) return NULL;
     ew_active *active = &ew_kept_at(w, place)->active;
     ew_raster_keep(w->geometry->raster, active);
     active->number = w->number;
+    active->places = (uint8_t)places;
     if (EW_WITH_SPANS && w->row) active->at.seen = EW_NOT_SEEN;
     active->next = *link;
     *link = place;
@@ -328,7 +328,7 @@ static void give_ended(ew_picture_work *w)
     while (place != EW_NO_PLACE) {
         const ew_active *active = &ew_kept_at(w, place)->active;
         const ew_place next = active->next;
-        give_places(w, place, places_of(&active->triangle));
+        give_places(w, place, active->places);
         w->active--;
         place = next;
     }

@@ -106,6 +106,7 @@ static ew_picture_work *work_init(const memory_plan *plan, const ew_picture *pic
         w->rows = 1;
     }
     w->is_listed = (uint8_t)plan->is_listed;
+    w->is_narrow = picture->scissor.x0 > 0 || picture->scissor.x1 < picture->width;
     w->row = NULL;
     w->colour = at;
     w->colour_bytes = plan->colour;
@@ -393,6 +394,15 @@ static int32_t end_of_bands(const ew_picture_work *w, int32_t row, uint32_t coun
     return rows < left ? row + rows : w->picture->end_row;
 }
 
+static EW_OWN_FRAME void set_scissor(const ew_picture_work *w, int32_t x0, int32_t y0, int32_t x1, int32_t y1)
+{
+    const ew_rect rect = { (uint16_t)x0, (uint16_t)y0, (uint16_t)x1, (uint16_t)y1 };
+    ew_raster_set_scissor(w->geometry->raster, &rect);
+}
+
+/* Whether a band is the first of those that are handed over together. */
+static int begins(const ew_picture_work *w, uint32_t band) { return w->bands_at_once == 1 || band % w->bands_at_once == 0; }
+
 /* Goes to the memory of the bands that begin on `row`, and clears it. */
 static EW_OWN_FRAME void start_colours(ew_picture_work *w, int32_t row)
 {
@@ -401,8 +411,7 @@ static EW_OWN_FRAME void start_colours(ew_picture_work *w, int32_t row)
     const int32_t end = end_of_bands(w, row, w->bands_at_once);
     const int second = p->buffers > 1 && w->band / w->bands_at_once & 1u;
     ew_raster_set_rows(raster, w->colour + (second ? w->colour_bytes : 0), w->depth, (uint16_t)row, (uint16_t)(end - row));
-    const ew_rect rect = { 0, (uint16_t)row, p->width, (uint16_t)end };
-    ew_raster_set_scissor(raster, &rect);
+    if (w->is_narrow) set_scissor(w, 0, row, p->width, end);
     ew_raster_clear(raster, p->background);
 }
 
@@ -412,12 +421,14 @@ static EW_OWN_FRAME int start_band(ew_picture_work *w)
 {
     const ew_picture *p = w->picture;
     const int32_t row = p->first_row + (int32_t)(w->band * w->rows), end = end_of_bands(w, row, 1);
-    if (w->band % w->bands_at_once == 0) start_colours(w, row);
+    if (begins(w, w->band)) start_colours(w, row);
     w->top = row > w->first ? row : w->first;
     w->bottom = end < w->end ? end : w->end;
     if (w->top >= w->bottom) return 0;
-    const ew_rect rect = { p->scissor.x0, (uint16_t)w->top, p->scissor.x1, (uint16_t)w->bottom };
-    ew_raster_set_scissor(w->geometry->raster, &rect);
+    /* ew_raster_set_rows has chosen all rows */
+    if (w->is_narrow || w->top > row || w->bottom < end || w->bands_at_once > 1) {
+        set_scissor(w, p->scissor.x0, w->top, p->scissor.x1, w->bottom);
+    }
     return 1;
 }
 
@@ -469,7 +480,7 @@ static EW_OWN_FRAME int prepare(const ew_picture *picture, const ew_object *obje
 static EW_OWN_FRAME void hand_over(const ew_picture_work *w)
 {
     const uint32_t behind = w->band + 1u;
-    if (behind == w->bands || behind % w->bands_at_once == 0) w->picture->band(w->picture->user, &w->geometry->raster->target);
+    if (behind == w->bands || begins(w, behind)) w->picture->band(w->picture->user, &w->geometry->raster->target);
 }
 
 /* One band after the other, in the caller's frame: below this lie the deepest calls. */

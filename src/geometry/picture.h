@@ -73,6 +73,7 @@ typedef struct ew_picture_work {
     uint32_t rows, bands, stride; /* of a band, EW_DEPTH_SPANS: 1                            */
     uint32_t bands_at_once; /* that are handed over together                                */
     uint8_t is_listed;    /* whether triangles are sorted into bands                         */
+    uint8_t is_narrow;    /* whether the scissor has not all of the columns                  */
     uint32_t band;        /* the one at hand                                                */
     int32_t first, end;   /* rows that triangles are drawn in                               */
     int32_t top, bottom;  /* rows of the band at hand among them                            */

@@ -138,9 +138,11 @@ EW_HOT void ew_raster_fill(ew_raster *raster, const ew_rect *r, uint16_t rgb565,
     const int as_it_is = ew_target_takes_words(target);
     const uint32_t n = (uint32_t)r->x1 - r->x0;
     ew_piece *piece = &raster->work.now.span.fill.any.piece;
-    piece->live = 0xFF;
-    piece->n = EW_PIECE;
-    ew_piece_paint(piece, target, rgb565);
+    if (!as_it_is) {
+        piece->live = 0xFF;
+        piece->n = EW_PIECE;
+        ew_piece_paint(piece, target, rgb565);
+    }
     for (uint16_t y = r->y0; y < r->y1; y++) {
         if (as_it_is) {
             fill_words(ew_target_words(target, y) + r->x0, n, rgb565);
