@@ -243,7 +243,7 @@ int ew_raster_begin(ew_raster *raster, const ew_raster_vertex *a, const ew_raste
                     uint16_t end);
 
 /* The first row below the triangle that ew_raster_begin made ready, or `end`. */
-uint16_t ew_raster_begun_end(const ew_raster *raster);
+static inline uint16_t ew_raster_begun_end(const ew_raster *raster) { return (uint16_t)raster->work.corners.end; }
 
 /* Draws it without keeping it. Returns whether a pixel was reached. */
 int ew_raster_draw_begun(ew_raster *raster);

@@ -125,33 +125,22 @@ static void take_slot(ew_picture_work *w, uint32_t number, const ew_screen_verte
     }
 }
 
-static EW_OWN_FRAME void fetch_anew(ew_picture_work *w, uint16_t vertex, ew_screen_vertex *out)
+static EW_OWN_FRAME void transform_anew(ew_picture_work *w, uint16_t vertex, ew_screen_vertex *out)
 {
     ew_transform_vertices(&w->at->transform, &w->at->mesh.vertices[vertex], 1, out);
     w->counts->transformed++;
     take_slot(w, w->first_vertex + vertex, out);
 }
 
-static const uint16_t *corners_of(const ew_picture_work *w)
+/* A vertex of the object at hand, where it is, or else in *out. */
+static inline const ew_screen_vertex *find_vertex(ew_picture_work *w, const ew_screen_vertex *screen, uint16_t vertex, ew_screen_vertex *out)
 {
-    return w->at->mesh.indices + (size_t)(w->number - w->first_triangle) * 3u;
-}
-
-/* Corners of the triangle at hand, to w->screen. */
-static EW_OWN_FRAME void fetch(ew_picture_work *w)
-{
-    const ew_screen_vertex *const screen = w->at->mesh.screen;
-    const uint16_t *index = corners_of(w);
-    for (ew_screen_vertex *out = w->screen, *const end = out + 3; out < end; out++, index++) {
-        if (screen) {
-            *out = screen[*index];
-            continue;
-        }
-        const uint32_t number = w->first_vertex + *index;
-        const uint16_t at = w->map[number];
-        if (at < w->slot_count && w->slots[at].number == number) *out = w->slots[at].vertex;
-        else fetch_anew(w, *index, out);
-    }
+    if (screen) return &screen[vertex];
+    const uint32_t number = w->first_vertex + vertex;
+    const uint16_t at = w->map[number];
+    if (at < w->slot_count && w->slots[at].number == number) return &w->slots[at].vertex;
+    transform_anew(w, vertex, out);
+    return out;
 }
 
 /* ---- triangles ---- */
@@ -231,31 +220,29 @@ static EW_OWN_FRAME int clipped(ew_picture_work *w, const uint16_t *index)
     return DRAW_FAN;
 }
 
-/* Makes the triangle at hand ready, with its corners in w->screen. Returns DONE, DRAW for `begin` or DRAW_FAN for
- * next_of_fan. */
+/* Makes the triangle at hand ready. Returns DONE, DRAW for `begin` or DRAW_FAN for next_of_fan. */
 static EW_OWN_FRAME int make_ready(ew_picture_work *w)
 {
     const ew_mesh *mesh = &w->at->mesh;
-    const uint16_t *index = corners_of(w);
-    const ew_screen_vertex *const s = w->screen;
-    const int any = s[0].outcode | s[1].outcode | s[2].outcode;
-    if (any) { /* one that faces away is seen to by the raster */
-        if (s[0].outcode & s[1].outcode & s[2].outcode & ~EW_OUT_GUARD) return DONE;
-        if (any & (EW_OUT_NEAR | EW_OUT_GUARD)) return clipped(w, index);
-    }
-
+    const uint16_t *const index = mesh->indices + (size_t)(w->number - w->first_triangle) * 3u;
     const int32_t uv_unit = (int32_t)1 << (12 - mesh->uv_fraction_bits);
     ew_raster_vertex *const v = w->geometry->corner;
+    ew_screen_vertex *const s = w->screen;
     for (int k = 0; k < 3; k++) {
-        ew_corner_from(&v[k], &mesh->vertices[index[k]], &s[k], uv_unit);
+        const ew_screen_vertex *from = find_vertex(w, mesh->screen, index[k], &s[k]);
+        s[k] = *from; /* the slot may be another's before the triangle is clipped */
+        ew_corner_from(&v[k], &mesh->vertices[index[k]], from, uv_unit);
         if (mesh->colours) v[k].colour = mesh->colours[index[k]];
     }
-    return DRAW;
+    const int any = s[0].outcode | s[1].outcode | s[2].outcode;
+    if (!any) return DRAW; /* one that faces away is seen to by the raster */
+    if (s[0].outcode & s[1].outcode & s[2].outcode & ~EW_OUT_GUARD) return DONE;
+    return any & (EW_OUT_NEAR | EW_OUT_GUARD) ? clipped(w, index) : DRAW;
 }
 
-/* Sets the triangle at hand up; kept ones stand at *kept_link then. Returns one of the above or an
+/* Sets the triangle at hand up; kept ones stand at *list.link then. Returns one of the above or an
  * error. */
-static EW_OWN_FRAME int start(ew_picture_work *w)
+static inline int start(ew_picture_work *w)
 {
     int result = make_ready(w);
     if (result == DRAW_FAN) return keep_fan(w);
@@ -354,7 +341,6 @@ static EW_OWN_FRAME int start_next(ew_picture_work *w, uint32_t number, int is_l
 {
     const int error = take(w, number, is_late);
     if (error) return error;
-    fetch(w);
     const int result = start(w);
     if (result >= DRAW_LATE) put_late(w, is_late);
     return result;
@@ -496,8 +482,7 @@ int ew_draw_late(ew_picture_work *w)
         result = go_to(w, w->entries[i]);
         if (result) break;
         w->counts->again++;
-        fetch(w);
-        result = make_ready(w);
+            result = make_ready(w);
         if (result == DRAW && (result = begin(w)) > 0) draw_begun(w, 0);
         else if (result == DRAW_FAN) for (unsigned part = 0; (result = next_of_fan(w)) > 0; part++) draw_begun(w, part);
     }

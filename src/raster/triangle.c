@@ -138,8 +138,6 @@ int ew_raster_begin(ew_raster *raster, const ew_raster_vertex *a, const ew_raste
     return set_up(raster, a, b, c, end);
 }
 
-uint16_t ew_raster_begun_end(const ew_raster *raster) { return (uint16_t)raster->work.corners.end; }
-
 int ew_raster_draw_begun(ew_raster *raster)
 {
     const int32_t first = raster->work.corners.first, end = smaller(raster->work.corners.end, raster->scissor.y1);
@@ -236,13 +234,18 @@ EW_NOINLINE void start_lowest_edge(ew_active *active)
 }
 
 /* To a row on which edges change, or above. */
-static int draw_part(ew_raster *raster, ew_active *active, int32_t row, int32_t end)
+EW_NOINLINE int draw_any(ew_raster *raster, ew_active *active, int32_t row, int32_t end)
 {
-    if (active->triangle.walk != WALK_ANY) return draw_quick(raster, &active->triangle, active->edge, row, end);
     copy_to_work(raster, active);
     const int reached = ew_rows_of_any(raster, row, end);
     copy_from_work(active, raster);
     return reached;
+}
+
+EW_ALWAYS_INLINE int draw_part(ew_raster *raster, ew_active *active, int32_t row, int32_t end)
+{
+    if (active->triangle.walk == WALK_ANY) return draw_any(raster, active, row, end);
+    return draw_quick(raster, &active->triangle, active->edge, row, end);
 }
 
 int ew_raster_draw_active(ew_raster *raster, ew_active *active)
