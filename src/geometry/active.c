@@ -107,7 +107,7 @@ static ew_place *keep(ew_picture_work *w, ew_place *link)
 
 /* ---- vertices ---- */
 
-static void take_slot(ew_picture_work *w, uint32_t number, const ew_screen_vertex *v)
+static EW_OWN_FRAME void take_slot(ew_picture_work *w, uint32_t number, const ew_screen_vertex *v)
 {
     enum { TRIES = 16 };
     const uint32_t tries = w->slot_count < TRIES ? w->slot_count : TRIES;
@@ -125,21 +125,22 @@ static void take_slot(ew_picture_work *w, uint32_t number, const ew_screen_verte
     }
 }
 
-static EW_OWN_FRAME void transform_anew(ew_picture_work *w, uint16_t vertex, ew_screen_vertex *out)
+/* Corners of the triangle at hand. */
+static const uint16_t *corners_of(const ew_picture_work *w)
 {
-    ew_transform_vertices(&w->at->transform, &w->at->mesh.vertices[vertex], 1, out);
-    w->counts->transformed++;
-    take_slot(w, w->first_vertex + vertex, out);
+    return w->at->mesh.indices + (size_t)(w->number - w->first_triangle) * 3u;
 }
 
 /* A vertex of the object at hand, where it is, or else in *out. */
-static inline const ew_screen_vertex *find_vertex(ew_picture_work *w, const ew_screen_vertex *screen, uint16_t vertex, ew_screen_vertex *out)
+static inline const ew_screen_vertex *find_vertex(ew_picture_work *w, const ew_mesh *mesh, uint16_t vertex, ew_screen_vertex *out)
 {
-    if (screen) return &screen[vertex];
+    if (mesh->screen) return &mesh->screen[vertex];
     const uint32_t number = w->first_vertex + vertex;
     const uint16_t at = w->map[number];
     if (at < w->slot_count && w->slots[at].number == number) return &w->slots[at].vertex;
-    transform_anew(w, vertex, out);
+    ew_transform_vertices(&w->at->transform, &mesh->vertices[vertex], 1, out);
+    w->counts->transformed++;
+    take_slot(w, number, out);
     return out;
 }
 
@@ -212,11 +213,11 @@ static EW_OWN_FRAME int next_of_fan(ew_picture_work *w)
     return 0;
 }
 
-static EW_OWN_FRAME int clipped(ew_picture_work *w, const uint16_t *index)
+static EW_OWN_FRAME int clipped(ew_picture_work *w)
 {
     for (int k = 0; k < 3; k++) w->geometry->clip_screen[k] = &w->screen[k];
     w->geometry->transform = w->at->transform;
-    ew_clip_triangle(w->geometry, &w->at->mesh, index);
+    ew_clip_triangle(w->geometry, &w->at->mesh, corners_of(w));
     return DRAW_FAN;
 }
 
@@ -224,12 +225,12 @@ static EW_OWN_FRAME int clipped(ew_picture_work *w, const uint16_t *index)
 static EW_OWN_FRAME int make_ready(ew_picture_work *w)
 {
     const ew_mesh *mesh = &w->at->mesh;
-    const uint16_t *const index = mesh->indices + (size_t)(w->number - w->first_triangle) * 3u;
+    const uint16_t *const index = corners_of(w);
     const int32_t uv_unit = (int32_t)1 << (12 - mesh->uv_fraction_bits);
     ew_raster_vertex *const v = w->geometry->corner;
     ew_screen_vertex *const s = w->screen;
     for (int k = 0; k < 3; k++) {
-        const ew_screen_vertex *from = find_vertex(w, mesh->screen, index[k], &s[k]);
+        const ew_screen_vertex *from = find_vertex(w, mesh, index[k], &s[k]);
         s[k] = *from; /* the slot may be another's before the triangle is clipped */
         ew_corner_from(&v[k], &mesh->vertices[index[k]], from, uv_unit);
         if (mesh->colours) v[k].colour = mesh->colours[index[k]];
@@ -237,17 +238,16 @@ static EW_OWN_FRAME int make_ready(ew_picture_work *w)
     const int any = s[0].outcode | s[1].outcode | s[2].outcode;
     if (!any) return DRAW; /* one that faces away is seen to by the raster */
     if (s[0].outcode & s[1].outcode & s[2].outcode & ~EW_OUT_GUARD) return DONE;
-    return any & (EW_OUT_NEAR | EW_OUT_GUARD) ? clipped(w, index) : DRAW;
+    return any & (EW_OUT_NEAR | EW_OUT_GUARD) ? clipped(w) : DRAW;
 }
 
-/* Sets the triangle at hand up; kept ones stand at *list.link then. Returns one of the above or an
+/* Sets up what make_ready has made; kept ones stand at *list.link then. Returns one of the above or an
  * error. */
-static inline int start(ew_picture_work *w)
+static inline int start(ew_picture_work *w, int how)
 {
-    int result = make_ready(w);
-    if (result == DRAW_FAN) return keep_fan(w);
-    if (result == DRAW) result = begin(w);
-    if (result <= 0) return result;
+    if (how == DRAW_FAN) return keep_fan(w);
+    if (how == DRAW) how = begin(w);
+    if (how <= 0) return how;
     if (!w->row && ew_raster_begun_end(w->geometry->raster) <= w->bottom) return DRAW;
     return keep(w, w->list.link) ? KEPT : DRAW_LATE;
 }
@@ -336,12 +336,18 @@ static inline int draw_kept(ew_picture_work *w, uint32_t number)
     }
 }
 
-/* Starts the next triangle before which no kept one comes, `number`. */
-static EW_OWN_FRAME int start_next(ew_picture_work *w, uint32_t number, int is_late)
+/* The next triangle before which no kept one comes, `number`, as make_ready leaves it: not below start_next,
+ * since the deepest calls lie below it. Returns what start_next asks for, or an error. */
+static inline int get_next(ew_picture_work *w, uint32_t number, int is_late)
 {
     const int error = take(w, number, is_late);
-    if (error) return error;
-    const int result = start(w);
+    return error ? error : make_ready(w);
+}
+
+/* Starts it. */
+static EW_OWN_FRAME int start_next(ew_picture_work *w, int how, int is_late)
+{
+    const int result = start(w, how);
     if (result >= DRAW_LATE) put_late(w, is_late);
     return result;
 }
@@ -362,7 +368,9 @@ int ew_draw_band(ew_picture_work *w)
         const uint32_t late = number_of_late(w), next = number_of_next(w), number = late < next ? late : next;
         result = draw_kept(w, number);
         if (number == EW_NO_TRIANGLE || result < 0) break;
-        result = start_next(w, number, late < next);
+        const int is_late = late < next;
+        result = get_next(w, number, is_late);
+        if (result > 0) result = start_next(w, result, is_late);
         if (result == DRAW_FAN) {
             while ((result = next_of_fan(w)) > 0) ew_raster_draw_begun(w->geometry->raster);
         } else if (result >= DRAW) {
@@ -443,7 +451,9 @@ int ew_show_spans(ew_picture_work *w)
     while (result >= 0) {
         const uint32_t number = show_until_next(w);
         if (number == EW_NO_TRIANGLE) break;
-        result = start_next(w, number, number == number_of_late(w));
+        const int is_late = number == number_of_late(w);
+        result = get_next(w, number, is_late);
+        if (result > 0) result = start_next(w, result, is_late);
         if (result > 0) result = show_late(w, result);
     }
     end_showing(w);

@@ -341,10 +341,12 @@ static void sort_in_place(uint32_t *entries, uint32_t count)
     }
 }
 
-/* Appends what may be seen. */
+/* Makes the list of triangles. */
 static EW_OWN_FRAME void list(ew_picture_work *w)
 {
+    if (w->first >= w->end) return;
     init_listing(w);
+    w->first_triangle = w->first_vertex = 0;
     for (uint32_t i = 0; i < w->count; i++) {
         const ew_object *object = &w->objects[i];
         w->number = w->first_triangle;
@@ -355,12 +357,10 @@ static EW_OWN_FRAME void list(ew_picture_work *w)
     }
 }
 
-/* Makes the list of triangles, and of what memory is left room for vertices and for kept ones. */
+/* Sorts them, and makes of what memory is left room for vertices and for kept ones. */
 static EW_OWN_FRAME void sort(ew_picture_work *w)
 {
     w->first_triangle = w->first_vertex = w->behind = 0;
-    if (w->first < w->end) list(w);
-    w->first_triangle = w->first_vertex = 0;
     if (!sort_by_counting(w)) sort_in_place(w->entries, w->entry_count);
     ew_active_init(w);
 }
@@ -487,7 +487,10 @@ static EW_OWN_FRAME void hand_over(const ew_picture_work *w)
 static inline int draw(ew_picture_work *w)
 {
     int error = EW_OK;
-    if (w->is_listed) sort(w);
+    if (w->is_listed) {
+        list(w);
+        sort(w);
+    }
     for (; w->band < w->bands && error >= 0; w->band++) {
         if (start_band(w)) {
             if (EW_WITH_SPANS && w->row) error = ew_draw_visible(w);

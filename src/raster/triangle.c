@@ -234,18 +234,13 @@ EW_NOINLINE void start_lowest_edge(ew_active *active)
 }
 
 /* To a row on which edges change, or above. */
-EW_NOINLINE int draw_any(ew_raster *raster, ew_active *active, int32_t row, int32_t end)
+EW_ALWAYS_INLINE int draw_part(ew_raster *raster, ew_active *active, int32_t row, int32_t end)
 {
+    if (active->triangle.walk != WALK_ANY) return draw_quick(raster, &active->triangle, active->edge, row, end);
     copy_to_work(raster, active);
     const int reached = ew_rows_of_any(raster, row, end);
     copy_from_work(active, raster);
     return reached;
-}
-
-EW_ALWAYS_INLINE int draw_part(ew_raster *raster, ew_active *active, int32_t row, int32_t end)
-{
-    if (active->triangle.walk == WALK_ANY) return draw_any(raster, active, row, end);
-    return draw_quick(raster, &active->triangle, active->edge, row, end);
 }
 
 int ew_raster_draw_active(ew_raster *raster, ew_active *active)
@@ -254,15 +249,14 @@ int ew_raster_draw_active(ew_raster *raster, ew_active *active)
     int32_t row = larger(active->row, raster->scissor.y0);
     int reached = 0;
     if (row >= end) return 0;
+    active->row = (uint16_t)end;
+    active->at.quick = quick_until(active, end);
     if (row < turn && turn < end) {
         reached = draw_part(raster, active, row, turn);
         row = turn;
     }
     if (row == turn) start_lowest_edge(active);
-    reached |= draw_part(raster, active, row, end);
-    active->row = (uint16_t)end;
-    active->at.quick = quick_until(active, end);
-    return reached;
+    return draw_part(raster, active, row, end) | reached;
 }
 
 void ew_raster_draw_list(ew_raster *raster, ew_active_list *list, uint32_t number)
