@@ -268,6 +268,13 @@ static uint32_t number_of_next(const ew_picture_work *w)
     return entry >> EW_NUMBER_BITS == w->band ? entry & EW_NUMBER_MASK : EW_NO_TRIANGLE;
 }
 
+/* The smaller one: none of those that are kept has it. */
+static inline uint32_t number_ahead(const ew_picture_work *w)
+{
+    const uint32_t late = number_of_late(w), next = number_of_next(w);
+    return late < next ? late : next;
+}
+
 /* Takes a late triangle, or else the next to begin, out of its list. */
 static inline int take(ew_picture_work *w, uint32_t number, int is_late)
 {
@@ -309,7 +316,7 @@ static void merge_late(ew_picture_work *w)
 }
 
 /* Gives back the places of those that ended. */
-static void give_ended(ew_picture_work *w)
+static EW_OWN_FRAME void give_ended(ew_picture_work *w)
 {
     ew_place place = w->list.ended;
     while (place != EW_NO_PLACE) {
@@ -327,7 +334,7 @@ static inline int draw_kept(ew_picture_work *w, uint32_t number)
 {
     for (;;) {
         ew_raster_draw_list(w->geometry->raster, &w->list, number < w->behind ? number : w->behind);
-        give_ended(w);
+        if (w->list.ended != EW_NO_PLACE) give_ended(w);
         if (*w->list.link == EW_NO_PLACE) return EW_OK;
         const uint32_t next = ew_kept_at(w, *w->list.link)->active.number;
         if (next >= number) return EW_OK;
@@ -365,10 +372,10 @@ int ew_draw_band(ew_picture_work *w)
     start_late(w);
     start_over(w);
     while (result >= 0) {
-        const uint32_t late = number_of_late(w), next = number_of_next(w), number = late < next ? late : next;
+        const uint32_t number = number_ahead(w);
         result = draw_kept(w, number);
         if (number == EW_NO_TRIANGLE || result < 0) break;
-        const int is_late = late < next;
+        const int is_late = number == number_of_late(w);
         result = get_next(w, number, is_late);
         if (result > 0) result = start_next(w, result, is_late);
         if (result == DRAW_FAN) {
@@ -406,7 +413,7 @@ static void show_kept(ew_picture_work *w, uint32_t number)
 /* Shows what was kept of triangles before the next that is not, and returns the number of that. */
 static EW_OWN_FRAME uint32_t show_until_next(ew_picture_work *w)
 {
-    const uint32_t late = number_of_late(w), next = number_of_next(w), number = late < next ? late : next;
+    const uint32_t number = number_ahead(w);
     show_kept(w, number);
     return number;
 }
@@ -482,6 +489,15 @@ static int is_seen(const ew_row_work *row, uint32_t number)
     return i != EW_NOT_SEEN;
 }
 
+/* Draws what is seen of the late triangle at hand, `how` as make_ready has it. Returns what is below 0 for an
+ * error. */
+static EW_OWN_FRAME int draw_ready(ew_picture_work *w, int how)
+{
+    if (how == DRAW && (how = begin(w)) > 0) draw_begun(w, 0);
+    else if (how == DRAW_FAN) for (unsigned part = 0; (how = next_of_fan(w)) > 0; part++) draw_begun(w, part);
+    return how;
+}
+
 int ew_draw_late(ew_picture_work *w)
 {
     int result = EW_OK;
@@ -492,9 +508,7 @@ int ew_draw_late(ew_picture_work *w)
         result = go_to(w, w->entries[i]);
         if (result) break;
         w->counts->again++;
-            result = make_ready(w);
-        if (result == DRAW && (result = begin(w)) > 0) draw_begun(w, 0);
-        else if (result == DRAW_FAN) for (unsigned part = 0; (result = next_of_fan(w)) > 0; part++) draw_begun(w, part);
+            result = draw_ready(w, make_ready(w));
     }
     return result < 0 ? result : EW_OK;
 }
