@@ -197,7 +197,7 @@ void ew_raster_keep(ew_raster *raster, ew_active *active)
     if (first < k->turn) ew_edge_start(&active->edge[!longest], x[top], y[top], x[middle], y[middle], first);
     EW_COPY_WORDS(&active->triangle, t, HEAD_BYTES);
     copy_planes(&active->triangle, t);
-    if (t->walk == WALK_ANY) EW_COPY((uint8_t *)&active->triangle.plane + plane_bytes(t), &t->u_origin, TAIL_BYTES);
+    if (t->walk == WALK_ANY) EW_COPY_WORDS((uint8_t *)&active->triangle.plane + plane_bytes(t), &t->u_origin, TAIL_BYTES);
     active->at.quick = first == raster->scissor.y0 ? quick_until(active, first) : 0;
 }
 
@@ -206,11 +206,9 @@ EW_NOINLINE void copy_to_work(ew_raster *raster, const ew_active *active)
 {
     ew_triangle *t = &raster->work.triangle;
     const ew_triangle *from = &active->triangle;
-    EW_COPY(t, from, HEAD_BYTES);
+    EW_COPY_WORDS(t, from, HEAD_BYTES);
     copy_planes(t, from);
-    EW_COPY(&t->u_origin, (const uint8_t *)&from->plane + plane_bytes(t), TAIL_BYTES);
-    raster->work.edge[0] = active->edge[0];
-    raster->work.edge[1] = active->edge[1];
+    EW_COPY_WORDS(&t->u_origin, (const uint8_t *)&from->plane + plane_bytes(t), TAIL_BYTES);
 }
 
 /* What a row changes. */
@@ -238,6 +236,8 @@ EW_ALWAYS_INLINE int draw_part(ew_raster *raster, ew_active *active, int32_t row
 {
     if (active->triangle.walk != WALK_ANY) return draw_quick(raster, &active->triangle, active->edge, row, end);
     copy_to_work(raster, active);
+    raster->work.edge[0] = active->edge[0];
+    raster->work.edge[1] = active->edge[1];
     const int reached = ew_rows_of_any(raster, row, end);
     copy_from_work(active, raster);
     return reached;
@@ -320,9 +320,12 @@ void ew_raster_draw_columns(ew_raster *raster, const ew_active *active, uint16_t
 void ew_active_step(ew_active *active)
 {
     ew_triangle *t = &active->triangle;
-    for (int i = 0; i <= t->attributes; i++) {
-        if (t->is_wide) t->plane.wide[i].row += t->plane.wide[i].dy;
-        else t->plane.narrow[i].row += t->plane.narrow[i].dy;
+    ew_plane32 *narrow = t->plane.narrow;
+    ew_plane64 *wide = t->plane.wide;
+    if (t->is_wide) {
+        for (ew_plane64 *const end = wide + t->attributes; wide <= end; wide++) wide->row += wide->dy;
+    } else {
+        for (ew_plane32 *const end = narrow + t->attributes; narrow <= end; narrow++) narrow->row += narrow->dy;
     }
     ew_edge_step(&active->edge[0]);
     ew_edge_step(&active->edge[1]);
