@@ -161,15 +161,12 @@ size_t ew_active_bytes(const ew_triangle *t)
 
 static void copy_planes(ew_triangle *to, const ew_triangle *from)
 {
-    if (from->attributes != 2) {
-        for (int i = 0; i <= from->attributes; i++) {
-            if (from->is_wide) to->plane.wide[i] = from->plane.wide[i];
-            else to->plane.narrow[i] = from->plane.narrow[i];
-        }
-    } else if (from->is_wide) {
-        EW_COPY_WORDS(to->plane.wide, from->plane.wide, 3 * sizeof *to->plane.wide);
-    } else {
+    if (from->is_wide) {
+        for (int i = 0; i <= from->attributes; i++) EW_COPY_WORDS(&to->plane.wide[i], &from->plane.wide[i], sizeof *to->plane.wide);
+    } else if (from->attributes == 2) { /* most of them */
         EW_COPY_WORDS(to->plane.narrow, from->plane.narrow, 3 * sizeof *to->plane.narrow);
+    } else {
+        for (int i = 0; i <= from->attributes; i++) EW_COPY_WORDS(&to->plane.narrow[i], &from->plane.narrow[i], sizeof *to->plane.narrow);
     }
 }
 
