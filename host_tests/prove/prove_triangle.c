@@ -49,6 +49,21 @@ static void any_vertices(void)
     any_vertex(&v[0]), any_vertex(&v[1]), any_vertex(&v[2]);
 }
 
+/* By itself or in a list, where its row may lag behind. */
+static void draw_on(void)
+{
+    uint16_t first = 0;
+    ew_active_list list = { .places = (uint8_t *)&active, .link = &first, .ended = EW_NO_PLACE };
+    if (any_of(2)) {
+        (void)ew_raster_draw_active(&raster, &active);
+        return;
+    }
+    active.number = 0;
+    active.next = EW_NO_PLACE;
+    ew_raster_draw_list(&raster, &list, 1);
+    if (first == 0) active.row = raster.scissor.y1; /* else it is done */
+}
+
 static void begun(void)
 {
     any_vertices();
@@ -61,7 +76,7 @@ static void begun(void)
         ew_raster_keep(&raster, &active);
         while (active.row < active.end) {
             raster.scissor.y0 = active.row; /* it begins with the triangle's next row */
-            (void)ew_raster_draw_active(&raster, &active);
+            draw_on();
         }
     }
 }
