@@ -54,6 +54,7 @@ SPANS = [
     span_part("span_pixels", ""),
     span_part("span_any", ""),
 ]
+
 PARTS = [
     Part("display", "prove_display.c", "src/display/crc.c src/display/hid_display.c", precision=1),
     Part("entry", "prove_entry.c", CONTEXT + " src/raster/span.c"),
