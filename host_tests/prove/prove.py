@@ -39,6 +39,22 @@ class Part:
         self.promises = set(promises)
 
 
+def span_part(name, taken, options=()):
+    """Of src/raster/span.c, which the driver holds: with the functions `taken` at their word, which other parts prove."""
+    return Part(name, "prove_span.c", "fixed/recip.c", ints=(32,), precision=0,
+                options=["-eva-split-limit", "300", "-eva-auto-loop-unroll", "4",
+                         "-eva-use-spec", "ew_run_near,ew_run_after,ew_run_first" + taken, *options])
+
+
+SPANS = [
+    span_part("span", ",piece_of_texture,piece_of_any", ["-eva-min-loop-unroll", "3"]),
+    span_part("span_pieces", ",runs_of_texture,pixels_of_texture",
+              ["-eva-slevel-function", "runs_of_texture:30,pixels_of_texture:30"]),
+    span_part("span_runs", ""),
+    span_part("span_pixels", ""),
+    span_part("span_any", ""),
+]
+
 PARTS = [
     Part("display", "prove_display.c", "src/display/crc.c src/display/hid_display.c", precision=1),
     Part("entry", "prove_entry.c", CONTEXT + " src/raster/span.c"),
@@ -48,8 +64,11 @@ PARTS = [
          exceptions=["narrow_basis", "within_bits"], promises=PRODUCTS),
     Part("pixels", "prove_pixels.c", "src/raster/fill.c " + CONTEXT, ints=(32,), precision=0,
          options=["-eva-auto-loop-unroll", "32", "-eva-min-loop-unroll", "3"]),
-    # the drivers hold run.h and texture.c
+    # the drivers hold run.h, span.c and texture.c
     Part("runs", "prove_runs.c", "", ints=(32,), precision=0, options=["-eva-split-limit", "300"]),
+    *SPANS,
+    Part("loops", "prove_loops.c", "src/raster/loops.c src/raster/target.c", ints=(32,), precision=0,
+         options=["-eva-auto-loop-unroll", "16", "-eva-min-loop-unroll", "11"]),
     Part("texture", "prove_texture.c", "src/raster/target.c", ints=(32,), precision=0,
          exceptions=["remainder_of_period"],
          options=["-eva-interprocedural-splits", "-eva-slevel-function",
@@ -73,6 +92,9 @@ PLANTS = [
     ("out of bounds", "display", 32, "src/display/hid_display.c", "length > EW_STREAM_PAYLOAD_BYTES ||",
      "length > EW_STREAM_PAYLOAD_BYTES + 1 ||"),
     ("endless run", "runs", 32, "src/raster/run.h", "    if (n > limit->longest) n = limit->longest;\n", ""),
+    ("run too long", "span_runs", 32, "src/raster/span.c", "        m = smaller(m, span->left);\n        //@ split m;\n        if (t->rung",
+     "        m = smaller(m, span->left + 1);\n        //@ split m;\n        if (t->rung"),
+    ("loop too long", "loops", 32, "src/raster/loops.c", "*const end = z + n;", "*const end = z + n + 1;"),
     ("texel out of bounds", "texture", 32, "src/raster/texture.c", "    if (i == a->period) i = 0;\n", ""),
     ("pixel out of bounds", "draw2d", 32, "src/raster/draw2d.c", "x1 = smaller(x + width, s->x1)", "x1 = smaller(x + width, s->x1 + 1)"),
 ]
@@ -209,7 +231,7 @@ def main():
     start, report = time.time(), Report()
     print(f"{'part':<12} {'int':>3} {'alarms':>7} {'exceptions':>10} {'reached':>8} {'seconds':>8}")
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        longest_first = sorted(chosen, key=lambda part: part.name not in ("setup", "texture", "draw2d", "triangle"))
+        longest_first = sorted(chosen, key=lambda part: part.name not in ("setup", "texture", "draw2d", "triangle", "span", "span_pieces"))
         runs = []
         for part, bits in ((part, bits) for part in longest_first for bits in part.ints):
             log = os.path.join(options.build, f"{part.name}-{bits}.log")

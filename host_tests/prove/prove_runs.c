@@ -1,19 +1,6 @@
 /* src/raster/run.h: lengths of runs, for every 1/z, slope and tolerance. */
-#include "edgewalk/raster_work.h"
+#include "runs.h"
 #include "unknown.h"
-
-/* What span.c relies on. */
-/*@ requires run_in_range: 0 <= n;
-    assigns \result \from limit->scale, limit->fall, limit->longest, limit->down, w, n;
-    ensures run_length: 0 <= \result <= 256; */
-static inline int32_t ew_run_near(const ew_run_limit *limit, uint32_t w, int32_t n);
-/*@ requires run_in_range: 0 <= n <= 256;
-    assigns \result \from limit->scale, limit->fall, limit->longest, limit->down, w, n;
-    ensures run_length: 0 <= \result <= 256; */
-static inline int32_t ew_run_after(const ew_run_limit *limit, uint32_t w, int32_t n);
-/*@ assigns \result \from limit->scale, limit->fall, limit->longest, limit->down, w;
-    ensures run_length: 0 <= \result <= 256; */
-static inline int32_t ew_run_first(const ew_run_limit *limit, uint32_t w);
 
 #include "src/raster/run.h" /* of the tree that is analysed: planted faults, too */
 

@@ -108,12 +108,31 @@ static inline void any_triangle(ew_raster *raster)
     ew_triangle *t = &raster->work.triangle;
     any_bytes(t, sizeof *t);
     any_bytes(&raster->work.now, sizeof raster->work.now);
-    t->attributes = (uint8_t)any_of(6);
+    t->rung = (uint8_t)between(1, EW_RUNG_COUNT - 1);
+    t->run_tolerance = (uint16_t)between(0, EW_TOLERANCE_MAX);
+    t->run_exponent = (int16_t)between(-100, 100);
+    t->run_shift = (uint8_t)any_of(32);
+    t->longest = (uint16_t)between(0, EW_LONGEST_RUN), t->sure_run = (uint16_t)between(0, EW_LONGEST_RUN);
+    t->column = (uint16_t)any_of(4096);
+    t->attributes = (uint8_t)Frama_C_nondet(any_of(2) * 2, 5);
+    t->is_wide = (uint8_t)any_of(2), t->newton = (uint8_t)any_of(2);
+    t->plain = (uint8_t)any_of(3);
+    t->w_lead = (uint8_t)any_of(32);
+    t->uv_bits = (uint8_t)between(EW_BITS_LEAST, EW_BITS_MOST);
+    t->u_shift = (uint8_t)any_of(32), t->v_shift = (uint8_t)any_of(32);
+    t->shade_origin[0] = between(0, INT32_C(1) << 20);
+    t->shade_origin[1] = between(0, INT32_C(1) << 20);
+    t->shade_origin[2] = between(0, INT32_C(1) << 20);
 }
 static inline void check_triangle(const ew_raster *raster)
 {
     const ew_triangle *t = &raster->work.triangle;
-    //@ assert triangle: t->attributes <= 5;
+    //@ assert attributes_known: t->attributes <= 5 && t->is_wide <= 1 && t->plain <= 2 && t->column < 4096;
+    //@ assert rung_known: 1 <= t->rung < EW_RUNG_COUNT && t->newton <= 1;
+    //@ assert runs_known: t->run_tolerance <= 256 && -100 <= t->run_exponent <= 100 && t->run_shift <= 31;
+    //@ assert run_lengths_known: t->sure_run <= 256 && t->longest <= 256;
+    //@ assert shifts_known: t->w_lead <= 31 && 19 <= t->uv_bits <= 27 && t->u_shift <= 31 && t->v_shift <= 31;
+    //@ assert shades_known: \forall integer i; 0 <= i < 3 ==> 0 <= t->shade_origin[i] <= 1 << 20;
 }
 
 #endif

@@ -38,6 +38,19 @@ typedef uint32_t __attribute__((may_alias)) ew_pair16;
 #define EW_KEEP_ORDER(x) ((void)0)
 #endif
 
+/* Zero bits above the highest one of w > 0. The C gives 31 at most, so that shifts by it are defined for any w;
+ * with Thumb-2's instruction those for w = 0, which the error bound rules out, would give 0. */
+#if defined(__GNUC__) && defined(__thumb2__) && !defined(EW_PORTABLE)
+EW_ALWAYS_INLINE int ew_zeros_of(uint32_t w)
+{
+    int zeros;
+    __asm__("clz %0, %1" : "=r"(zeros) : "r"(w));
+    return zeros;
+}
+#else
+EW_ALWAYS_INLINE int ew_zeros_of(uint32_t w) { return ew_clz32(w | 1u); }
+#endif
+
 /* How far texel numbers are shifted to the left for the pixel loop: on ARMv6-M they count bytes. */
 #define EW_INDEX_SHIFT 0u
 

@@ -29,7 +29,7 @@ typedef struct divisor {
 EW_ALWAYS_INLINE divisor divisor_of(uint32_t w, int newton)
 {
     divisor d;
-    d.zeros = ew_clz32(w);
+    d.zeros = ew_zeros_of(w);
     d.reciprocal = newton ? ew_recip_newton(w << d.zeros) : ew_recip_table_inline(w << d.zeros);
     return d;
 }
@@ -239,12 +239,15 @@ static int is_short(const ew_triangle *t, const ew_span_work *span, int32_t m)
 EW_NOINLINE int32_t runs_of_texture(ew_packing *k, const ew_triangle *t, ew_span_work *span, int32_t m)
 {
     ew_linear *l = &span->linear;
+    //@ dynamic_split span->left;
     for (;;) {
         uint32_t u = l->u, du = l->du, v = l->v, dv = l->dv;
         m = smaller(m, span->left);
+        //@ split m;
         if (t->rung != EW_RUNG_AFFINE) tangent(t, l->w, l->dw, &u, &du, &v, &dv, m);
         fill_pixels(k, t, &span->fill.pen, u, du, v, dv, m);
         span->left -= m;
+        //@ merge m;
         if (span->left == 0) return 0;
         advance(l, (uint32_t)m);
         m = ew_run_after(&span->limit, l->w, m);
@@ -272,6 +275,7 @@ EW_NOINLINE int32_t pixels_of_texture(ew_packing *k, const ew_triangle *t, ew_sp
     ew_linear *l = &span->linear;
     ew_pen *pen = &span->fill.pen;
     const int32_t n = pixels_at_once(t, span);
+    //@ split n;
     span->left -= n;
     move(l, &span->by, UINT32_MAX, 2); /* they are exact where they are */
 #if EW_TRACE
@@ -306,6 +310,7 @@ EW_NOINLINE void piece_of_texture(ew_raster *raster, const ew_triangle *t, int32
     ew_packing *k = &raster->work.packing;
     ew_span_work *span = &raster->work.now.span;
     int32_t m = first_run(span, t, n);
+    //@ dynamic_split span->left;
     do {
         m = is_short(t, span, m) ? pixels_of_texture(k, t, span) : runs_of_texture(k, t, span, m);
     } while (span->left > 0);
@@ -430,17 +435,22 @@ static void piece_of_any(ew_raster *raster, int32_t n)
     const ew_triangle *t = &raster->work.triangle;
     ew_span_work *span = &raster->work.now.span;
     int32_t m = first_run(span, t, n);
+    //@ dynamic_split span->left;
     for (;;) {
         if (is_short(t, span, m)) {
             m = pixels_at_once(t, span);
+            //@ split m;
             move(&span->linear, &span->by, UINT32_MAX, t->attributes);
+            //@ loop unroll 20;
             for (int32_t i = 0; i < m; i++) fill_next(raster, 1);
             move(&span->linear, &span->by, 1, t->attributes);
         } else {
             m = smaller(m, span->left);
+            //@ split m;
             fill_next(raster, m);
         }
         span->left -= m;
+        //@ merge m;
         if (span->left == 0) return;
         m = ew_run_near(&span->limit, span->linear.w, m);
     }
@@ -512,7 +522,7 @@ EW_NOINLINE void start_narrow(ew_linear *l, const ew_triangle *t, int32_t x)
 static int alignment(uint64_t w, uint64_t end, uint32_t *least)
 {
     int64_t a = (int64_t)w, b = (int64_t)end, top = a > b ? a : b, bottom = a > b ? b : a;
-    int up = top > 0 ? ew_clz64((uint64_t)top) - 1 : 0;
+    int up = top > 0 ? ew_clz64((uint64_t)top << 1) : 0; /* top << up has no sign */
     *least = bottom > 0 ? (uint32_t)(((uint64_t)bottom << up) >> 32) : 0;
     return up;
 }
@@ -603,6 +613,7 @@ EW_NOINLINE void span_of_texture(ew_raster *raster, const ew_triangle *t, int32_
     ew_pen *pen = &raster->work.now.span.fill.pen;
     EW_KEEP_ORDER(l);
     pen_at(pen, raster, x, y);
+    //@ dynamic_split n;
     while (n > 0) {
         int32_t m = n;
         if (!t->is_wide) {
@@ -611,11 +622,13 @@ EW_NOINLINE void span_of_texture(ew_raster *raster, const ew_triangle *t, int32_
             wide_start(l, t, x);
             if (!steps_suffice(t, l->w, l->w + l->dw * (uint32_t)(n - 1), n)) m = next_of_wide(raster, t, x, n);
         }
+        //@ split m;
         const int down = (int)smaller(t->w_lead + l->align, 31);
         pen->w = depth_of(l->w, down), pen->dw = depth_step(l->dw, down);
         piece_of_texture(raster, t, m);
         x += m;
         n -= m;
+        //@ merge m;
     }
 }
 
@@ -757,10 +770,12 @@ EW_HOT int ew_rows_packed(ew_raster *raster, ew_triangle *t, ew_edge *edge, int3
 static void span_of_any(ew_raster *raster, int32_t x, int32_t y, int32_t n)
 {
     const ew_triangle *t = &raster->work.triangle;
+    //@ dynamic_split n;
     while (n > 0) {
         int32_t m = n;
         if (t->is_wide) m = next_of_wide(raster, t, x, n);
         else start_narrow(&raster->work.now.span.linear, t, x);
+        //@ split m;
         if (start_piece(raster, x, y, m)) {
             piece_of_texture(raster, t, m);
         } else {
@@ -768,6 +783,7 @@ static void span_of_any(ew_raster *raster, int32_t x, int32_t y, int32_t n)
         }
         x += m;
         n -= m;
+        //@ merge m;
     }
 }
 
