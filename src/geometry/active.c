@@ -508,7 +508,7 @@ int ew_draw_late(ew_picture_work *w)
         result = go_to(w, w->entries[i]);
         if (result) break;
         w->counts->again++;
-            result = draw_ready(w, make_ready(w));
+        result = draw_ready(w, make_ready(w));
     }
     return result < 0 ? result : EW_OK;
 }
