@@ -15,7 +15,7 @@ static picture whole;
 
 static uint32_t stride(void) { return random_scene_stride(&scene); }
 
-static int draw_whole(void)
+static int draw_whole_of(ew_screen_vertex *const screen[])
 {
     static ew_raster raster;
     static ew_geometry geometry;
@@ -33,7 +33,7 @@ static int draw_whole(void)
     int drawn = 0;
     for (uint32_t i = 0; i < scene.count; i++) {
         ew_mesh mesh = scene.object[i].mesh;
-        mesh.screen = scene.screen[i];
+        mesh.screen = screen[i];
         assert_int_equal(ew_raster_set_material(&raster, &scene.object[i].material), EW_OK);
         geometry.transform = scene.object[i].transform;
         const int32_t result = ew_draw_triangles(&geometry, &mesh);
@@ -43,12 +43,20 @@ static int draw_whole(void)
     return drawn;
 }
 
+static int draw_whole(void)
+{
+    ew_screen_vertex *screen[SCENE_OBJECTS];
+    for (int i = 0; i < SCENE_OBJECTS; i++) screen[i] = scene.screen[i];
+    return draw_whole_of(screen);
+}
+
 /* ---- the same in bands ---- */
 
 static const uint8_t bits_of[] = { 16, 16, 8, 8, 4, 1 };
 
 /* What a callback finds; the first pixel that differs. */
 typedef struct seen {
+    ew_raster *raster;
     int next_row, wrong_x, wrong_y, wrong; /* -1: none */
     void *last;
     int buffers;
@@ -77,6 +85,10 @@ static void compare(void *user, const ew_target *band)
             if (!same && !s->wrong) s->wrong = 1, s->wrong_x = (int)x, s->wrong_y = (int)in_whole;
         }
     }
+    /* a callback may draw, and leave its scissor behind */
+    const ew_rect scissor = { (uint16_t)(band->width / 3), band->first_row, (uint16_t)((band->width + 1) / 2), (uint16_t)(band->first_row + 1) };
+    if (ew_raster_set_scissor(s->raster, &scissor) != EW_OK) s->wrong = 5;
+    ew_raster_clear(s->raster, 0x1234);
 }
 
 typedef struct context {
@@ -96,7 +108,7 @@ static void *draw(void *user)
     uint8_t *const all = malloc(c->bytes + 8), *const memory = all ? all + c->bytes % 8 : NULL;
     if (!memory) abort();
     memset(all, 0x5A, c->bytes + 8);
-    c->seen = (seen){ .next_row = c->picture.first_row, .buffers = c->picture.buffers };
+    c->seen = (seen){ .raster = &c->raster, .next_row = c->picture.first_row, .buffers = c->picture.buffers };
     c->picture.band = compare;
     c->picture.user = &c->seen;
     ew_geometry_init(&c->geometry, &c->raster);
@@ -171,6 +183,94 @@ static void enough_memory(void **state)
     assert_true(set_up > 5000 || cases_alone());
 }
 
+/* Triangles of three rows, one below the other: none is kept longer than it has rows. */
+static void kept_no_longer(void **state)
+{
+    enum { COUNT = 12, PITCH = 4 };
+    (void)state;
+    static context c;
+    static ew_screen_vertex screen[3 * COUNT];
+    static ew_vertex16 vertex[3 * COUNT];
+    static uint16_t index[3 * COUNT], texels[16];
+    memset(&scene, 0, sizeof scene);
+    for (int i = 0; i < 3 * COUNT; i++) {
+        const int32_t x = i % 3 == 1 ? 12 : 1, y = i / 3 * PITCH + (i % 3 == 2 ? 3 : 0);
+        screen[i] = (ew_screen_vertex){ .x = x * 4096, .y = y * 4096, .w = UINT32_C(1) << 30 };
+        index[i] = (uint16_t)i;
+    }
+    scene.picture = (ew_picture){ .width = 16, .height = COUNT * PITCH, .end_row = COUNT * PITCH, .buffers = 1,
+                                  .scissor = { 0, 0, 16, COUNT * PITCH } };
+    scene.object[0].mesh = (ew_mesh){ .vertices = vertex, .screen = screen, .indices = index, .index_count = 3 * COUNT };
+    scene.object[0].vertex_count = 3 * COUNT;
+    scene.object[0].texture = (ew_texture){ .texels = texels, .width = 4, .height = 4 };
+    scene.object[0].material = (ew_material){ .texture = &scene.object[0].texture, .tolerance = 4, .flags = EW_DOUBLE_SIDED };
+    memcpy(scene.screen[0], screen, sizeof screen);
+    scene.count = 1;
+    assert_int_equal(draw_whole(), COUNT);
+    for (uint16_t rows = 1; rows <= PITCH; rows++) {
+        c.picture = scene.picture;
+        c.picture.rows = rows;
+        c.bytes = ew_picture_least(&c.picture, scene.object, scene.count) + 400000;
+        test_context("bands of %d", rows);
+        draw(&c);
+        check(&c);
+        assert_int_equal(c.counts.set_up, COUNT);
+        assert_int_equal(c.counts.again, 0);
+        assert_int_equal(c.counts.most_active, rows == 1 ? 1 : rows == PITCH ? 0 : 1);
+    }
+}
+
+/* More vertices than there are slots in what triangles are listed with, and than map has room for slots. */
+static void many_vertices(void **state)
+{
+    enum { SIDE = 150, COUNT = SIDE * SIDE, TRIANGLES = 2 * (SIDE - 1) * (SIDE - 1) };
+    (void)state;
+    static context c;
+    ew_vertex16 *vertex = calloc(COUNT, sizeof *vertex);
+    uint16_t *index = calloc(3 * TRIANGLES, sizeof *index);
+    ew_screen_vertex *screen = calloc(COUNT, sizeof *screen);
+    if (!vertex || !index || !screen) abort();
+    const ew_projection projection = { 65536, 65536, { INT32_C(1) << 29, -1 } };
+    const ew_viewport viewport = { 0, 0, 40, 40 };
+    ew_mat34 m;
+    ew_row_from_q16_16(&m.row[0], 65536, 0, 0, 0);
+    ew_row_from_q16_16(&m.row[1], 0, 65536, 0, 0);
+    ew_row_from_q16_16(&m.row[2], 0, 20000, 0, -98304);
+    random_scene_init(&scene);
+    scene.picture = (ew_picture){ .width = 40, .height = 40, .end_row = 40, .buffers = 1, .scissor = { 0, 0, 40, 40 } };
+    ew_object *o = &scene.object[0];
+    assert_int_equal(ew_transform_set(&o->transform, &projection, &m, &viewport), EW_OK);
+    for (uint32_t i = 0; i < COUNT; i++) { /* rows of the grid in an order that visits them over and over */
+        vertex[i].x = (int16_t)((int32_t)(i % SIDE) * 400 - 30000);
+        vertex[i].y = (int16_t)((int32_t)(i / SIDE * 37 % SIDE) * 400 - 30000);
+    }
+    uint32_t n = 0;
+    for (uint32_t y = 0; y + 1 < SIDE; y++) {
+        for (uint32_t x = 0; x + 1 < SIDE; x++) {
+            const uint32_t a = y * SIDE + x, other = (a * 7919u) % COUNT;
+            index[n++] = (uint16_t)a, index[n++] = (uint16_t)(a + 1), index[n++] = (uint16_t)(a + SIDE);
+            index[n++] = (uint16_t)other, index[n++] = (uint16_t)(a + 1), index[n++] = (uint16_t)(a + SIDE);
+        }
+    }
+    ew_transform_vertices(&o->transform, vertex, COUNT, screen);
+    o->mesh = (ew_mesh){ .vertices = vertex, .indices = index, .index_count = n };
+    o->vertex_count = COUNT;
+    o->material = (ew_material){ .colour = 0x1234, .flags = EW_DOUBLE_SIDED };
+    scene.object[1] = *o; /* twice: slots of more than 15 bits */
+    scene.count = 2;
+    draw_whole_of((ew_screen_vertex *const[]){ screen, screen });
+    static const size_t spare[] = { 0, 100000, 2000000 };
+    for (int i = 0; i < 3; i++) {
+        c.picture = scene.picture;
+        c.picture.rows = 8;
+        c.bytes = ew_picture_least(&c.picture, scene.object, scene.count) + spare[i];
+        test_context("%zu bytes to spare", spare[i]);
+        draw(&c);
+        check(&c);
+    }
+    free(vertex), free(index), free(screen);
+}
+
 /* Two contexts, two threads, different bands of the same objects. */
 static void two_threads(void **state)
 {
@@ -195,6 +295,7 @@ static void two_threads(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { TEST(any_band_any_memory), TEST(enough_memory), TEST(two_threads) };
+    const struct CMUnitTest tests[] = { TEST(any_band_any_memory), TEST(enough_memory), TEST(kept_no_longer), TEST(many_vertices),
+                                        TEST(two_threads) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

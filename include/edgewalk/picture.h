@@ -48,8 +48,8 @@ typedef struct ew_picture {
     ew_uq1_31 fog_near, fog_far; /* as in ew_raster_set_fog; both 0: none                     */
     uint16_t fog_colour;
     /* Called for each finished band, from the top: its memory, first_row and height; may draw
-     * into it. With one buffer the band has to be sent before it returns; with two, the band
-     * before this one has. */
+     * into it, also with the geometry's raster, whose scissor it need not put back, but its material.
+     * With one buffer the band has to be sent before it returns; with two, the band before this one has. */
     void (*band)(void *user, const ew_target *band);
     void *user;
 } ew_picture;

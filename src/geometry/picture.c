@@ -411,7 +411,8 @@ static EW_OWN_FRAME void start_colours(ew_picture_work *w, int32_t row)
     const int32_t end = end_of_bands(w, row, w->bands_at_once);
     const int second = p->buffers > 1 && w->band / w->bands_at_once & 1u;
     ew_raster_set_rows(raster, w->colour + (second ? w->colour_bytes : 0), w->depth, (uint16_t)row, (uint16_t)(end - row));
-    if (w->is_narrow) set_scissor(w, 0, row, p->width, end);
+    /* of the band before, or of its callback */
+    if (raster->scissor.x0 > 0 || raster->scissor.x1 < p->width) set_scissor(w, 0, row, p->width, end);
     ew_raster_clear(raster, p->background);
 }
 

@@ -278,6 +278,16 @@ EW_ALWAYS_INLINE uint32_t ew_fill_pixels(ew_packing *k, uint16_t *c, uint16_t *z
     "8:\tsubs r1, #20\n\t" \
     "stmia r1!, {r2, r3}\n\t"
 #define EW_EDGES_STEP EW_EDGE_STEP "adds r1, #12\n\t" EW_EDGE_STEP
+/* of both packed planes, high in r3 and low in r4; r1 is one word behind the planes' start */
+#define EW_PACKED_STEP \
+    "ldr r3, [r1, #8]\n\t" \
+    "ldr r4, [r1, #20]\n\t" \
+    "ldr r5, [r1, #16]\n\t" \
+    "ldr r6, [r1, #28]\n\t" \
+    "adds r6, r6, r4\n\t" \
+    "adcs r5, r3\n\t" \
+    "str r6, [r1, #20]\n\t" \
+    "str r5, [r1, #8]\n\t"
 EW_ALWAYS_INLINE void ew_walk_rows(ew_rows *rows, int is_256)
 {
     register ew_rows *s __asm__("r0") = rows;
@@ -319,15 +329,7 @@ EW_ALWAYS_INLINE void ew_walk_rows(ew_rows *rows, int is_256)
                      "ldr r4, [r0, #48]\n\t"     /* lead */
                      "lsrs r3, r4\n\t"
                      "lsls r7, r3, #1\n\t"       /* w */
-                     "stmia r1!, {r5}\n\t"
-                     "ldr r3, [r1, #8]\n\t"      /* of both packed: high, low; r1 is one plane's word on */
-                     "ldr r4, [r1, #20]\n\t"
-                     "ldr r5, [r1, #16]\n\t"
-                     "ldr r6, [r1, #28]\n\t"
-                     "adds r6, r6, r4\n\t"
-                     "adcs r5, r3\n\t"
-                     "str r6, [r1, #20]\n\t"
-                     "str r5, [r1, #8]\n\t"
+                     "stmia r1!, {r5}\n\t" EW_PACKED_STEP
                      "ldr r6, [r0, #12]\n\t"     /* dhigh */
                      "ldr r5, [r0, #16]\n\t"     /* dlow */
                      "muls r6, r2, r6\n\t"
@@ -356,15 +358,7 @@ EW_ALWAYS_INLINE void ew_walk_rows(ew_rows *rows, int is_256)
                      "7:\tldmia r1!, {r2, r3, r4}\n\t" /* no pixel: planes only */
                      "adds r2, r2, r4\n\t"
                      "subs r1, #12\n\t"
-                     "stmia r1!, {r2}\n\t"
-                     "ldr r3, [r1, #8]\n\t"
-                     "ldr r4, [r1, #20]\n\t"
-                     "ldr r5, [r1, #16]\n\t"
-                     "ldr r6, [r1, #28]\n\t"
-                     "adds r6, r6, r4\n\t"
-                     "adcs r5, r3\n\t"
-                     "str r6, [r1, #20]\n\t"
-                     "str r5, [r1, #8]\n\t"
+                     "stmia r1!, {r2}\n\t" EW_PACKED_STEP
                      "b 6b\n"
                      "8:"
                      : [t] "=&l"(t), [w] "=&l"(w), [high] "=&l"(high), [low] "=&l"(low), [c] "=&l"(c), [z] "=&l"(z), [d] "=&l"(d)
@@ -377,6 +371,7 @@ EW_ALWAYS_INLINE void ew_edges_step(ew_edge *edge)
     register ew_edge *e __asm__("r1") = edge;
     __asm__ volatile(".syntax unified\n\t" EW_EDGES_STEP : "+r"(e) : : "r2", "r3", "r4", "r5", "r6", "cc", "memory");
 }
+#undef EW_PACKED_STEP
 #undef EW_EDGES_STEP
 #undef EW_EDGE_STEP
 #endif

@@ -348,7 +348,7 @@ static void runs_init(ew_triangle *t, const ew_raster *raster, uint32_t w_min, u
     const uint64_t dw = t->is_wide ? ew_abs64((int64_t)t->plane.wide[EW_PLANE_W].dx) :
                                      (uint64_t)ew_abs32((int32_t)t->plane.narrow[EW_PLANE_W].dx) << 32;
     const int automatic = raster->material.rung == EW_RUNG_AUTO;
-    t->run_tolerance = t->sure_run = 0;
+    t->run_tolerance = t->sure_run = t->shortest = 0;
     if (t->walk == WALK_PACKED) return;
     if (t->rung == EW_RUNG_TABLE || t->rung == EW_RUNG_EXACT) {
         /* where 1/z does not change along rows, a run is exact whatever its length */

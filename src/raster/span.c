@@ -622,8 +622,8 @@ EW_NOINLINE void span_of_texture(ew_raster *raster, const ew_triangle *t, int32_
             wide_start(l, t, x);
             if (!steps_suffice(t, l->w, l->w + l->dw * (uint32_t)(n - 1), n)) m = next_of_wide(raster, t, x, n);
         }
-        //@ split m;
         const int down = (int)smaller(t->w_lead + l->align, 31);
+        //@ split m;
         pen->w = depth_of(l->w, down), pen->dw = depth_step(l->dw, down);
         piece_of_texture(raster, t, m);
         x += m;

@@ -164,7 +164,7 @@ static void copy_planes(ew_triangle *to, const ew_triangle *from)
     if (from->is_wide) {
         for (int i = 0; i <= from->attributes; i++) EW_COPY_WORDS(&to->plane.wide[i], &from->plane.wide[i], sizeof *to->plane.wide);
     } else if (from->attributes == 2) { /* most of them */
-        EW_COPY_WORDS(to->plane.narrow, from->plane.narrow, 3 * sizeof *to->plane.narrow);
+        EW_COPY_WORDS(&to->plane.narrow[0], &from->plane.narrow[0], 3 * sizeof *to->plane.narrow);
     } else {
         for (int i = 0; i <= from->attributes; i++) EW_COPY_WORDS(&to->plane.narrow[i], &from->plane.narrow[i], sizeof *to->plane.narrow);
     }
