@@ -258,9 +258,9 @@ void ew_raster_keep(ew_raster *raster, ew_active *active);
 /* Returns whether a pixel was reached. It is done when active->row is active->end. */
 int ew_raster_draw_active(ew_raster *raster, ew_active *active);
 
-/* The same for those of a list with a number below `number`, all of one material. From the scissor that was set when one
- * was kept on, each must begin where the one before ended. What is done is taken out of the list and put
- * in front of list->ended, which is EW_NO_PLACE or a list already. */
+/* The same for those of a list with a number below `number`, all of one material. From the scissor that
+ * was set when a triangle was kept, each must begin where the one before ended. What is done is taken out
+ * of the list and put in front of list->ended, which is EW_NO_PLACE or a list already. */
 void ew_raster_draw_list(ew_raster *raster, ew_active_list *list, uint32_t number);
 
 /* The same row by row and column by column, for who finds out what is seen on a row and draws nothing

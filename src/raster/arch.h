@@ -21,9 +21,11 @@
 /* Two items of 16 bits, both of them `value`, at an address that is a multiple of 4: one store. */
 typedef uint32_t __attribute__((may_alias)) ew_pair16;
 #define EW_STORE_TWICE(to, value) ((void)(*(ew_pair16 *)(void *)(to) = (uint32_t)(value) << 16 | (value)))
-/* The same, of a multiple of 4 bytes at such an address: without a call on ARMv6-M, too, where there are few. */
+/* As EW_COPY, where both lie as a uint32_t of this machine does: without a call on ARMv6-M, too, where there are
+ * few bytes. */
 #define EW_COPY_WORDS(to, from, bytes) \
-    ((void)__builtin_memcpy(__builtin_assume_aligned(to, 4), __builtin_assume_aligned(from, 4), bytes))
+    ((void)__builtin_memcpy(__builtin_assume_aligned(to, __alignof__(uint32_t)), \
+                            __builtin_assume_aligned(from, __alignof__(uint32_t)), bytes))
 #else
 #define EW_STORE_TWICE(to, value) ((void)((to)[0] = (value), (to)[1] = (value)))
 #define EW_COPY_WORDS EW_COPY
