@@ -14,8 +14,8 @@ enum { ROW = 4095, WIDTHS_LOG2 = 3, HEIGHTS_LOG2 = 2 };
 static uint16_t colour[ACROSS], depth[ACROSS], texels[1 << (WIDTHS_LOG2 + HEIGHTS_LOG2)];
 
 /* What a piece still has of pixels lies between the pen and the end of the row. */
-#define HAS(k) ((k) <= ACROSS && span->left == (k) && span->fill.pen.colour == colour + (ACROSS - (k)) && \
-                span->fill.pen.depth == depth + (ACROSS - (k)))
+#define HAS(k) ((k) <= ACROSS && span->left == (k) && span->fill.textured.pen.colour == colour + (ACROSS - (k)) && \
+                span->fill.textured.pen.depth == depth + (ACROSS - (k)))
 #define HAS_0_TO_9 (HAS(0) || HAS(1) || HAS(2) || HAS(3) || HAS(4) || HAS(5) || HAS(6) || HAS(7) || HAS(8) || HAS(9))
 #define HAS_10_TO_20 (HAS(10) || HAS(11) || HAS(12) || HAS(13) || HAS(14) || HAS(15) || HAS(16) || HAS(17) || \
                       HAS(18) || HAS(19) || HAS(20))
@@ -28,12 +28,12 @@ static uint16_t colour[ACROSS], depth[ACROSS], texels[1 << (WIDTHS_LOG2 + HEIGHT
 /*@ requires run_in_range: 0 <= m <= 256;
     requires left_in_range: 1 <= span->left <= ACROSS;
     requires limit_ready: IS_GOOD(span->limit);
-    requires at_pen: span->fill.pen.colour == colour + (ACROSS - span->left);
-    requires at_pen_depth: span->fill.pen.depth == depth + (ACROSS - span->left);
-    assigns span->linear.w, span->linear.u, span->linear.v, span->fill.pen.w, colour[..], depth[..] \from m;
+    requires at_pen: span->fill.textured.pen.colour == colour + (ACROSS - span->left);
+    requires at_pen_depth: span->fill.textured.pen.depth == depth + (ACROSS - span->left);
+    assigns span->linear.w, span->linear.u, span->linear.v, span->fill.textured.pen.w, colour[..], depth[..] \from m;
     assigns span->left \from span->left;
-    assigns span->fill.pen.colour \from span->fill.pen.colour;
-    assigns span->fill.pen.depth \from span->fill.pen.depth;
+    assigns span->fill.textured.pen.colour \from span->fill.textured.pen.colour;
+    assigns span->fill.textured.pen.depth \from span->fill.textured.pen.depth;
     assigns \result \from m;
     ensures next_run: 0 <= \result <= 256;
     ensures pen_moved: HAS_0_TO_9 || HAS_10_TO_20; */
@@ -41,12 +41,12 @@ static int32_t runs_of_texture(ew_packing *k, const ew_triangle *t, ew_span_work
 
 /*@ requires left_in_range: 1 <= span->left <= ACROSS;
     requires limit_ready: IS_GOOD(span->limit);
-    requires at_pen: span->fill.pen.colour == colour + (ACROSS - span->left);
-    requires at_pen_depth: span->fill.pen.depth == depth + (ACROSS - span->left);
-    assigns span->linear.w, span->linear.u, span->linear.v, span->fill.pen.w, colour[..], depth[..] \from t->rung;
+    requires at_pen: span->fill.textured.pen.colour == colour + (ACROSS - span->left);
+    requires at_pen_depth: span->fill.textured.pen.depth == depth + (ACROSS - span->left);
+    assigns span->linear.w, span->linear.u, span->linear.v, span->fill.textured.pen.w, colour[..], depth[..] \from t->rung;
     assigns span->left \from span->left;
-    assigns span->fill.pen.colour \from span->fill.pen.colour;
-    assigns span->fill.pen.depth \from span->fill.pen.depth;
+    assigns span->fill.textured.pen.colour \from span->fill.textured.pen.colour;
+    assigns span->fill.textured.pen.depth \from span->fill.textured.pen.depth;
     assigns \result \from t->rung;
     ensures next_run: 0 <= \result <= 256;
     ensures pen_moved: HAS_0_TO_9 || HAS_10_TO_20; */
@@ -54,15 +54,15 @@ static int32_t pixels_of_texture(ew_packing *k, const ew_triangle *t, ew_span_wo
 
 /*@ requires piece_in_range: 1 <= n <= 256;
     requires work_ready: IS_WORK(raster->work.now.span);
-    requires at_pen: \valid(raster->work.now.span.fill.pen.colour + (0 .. n - 1));
-    requires at_pen_depth: \valid(raster->work.now.span.fill.pen.depth + (0 .. n - 1));
+    requires at_pen: \valid(raster->work.now.span.fill.textured.pen.colour + (0 .. n - 1));
+    requires at_pen_depth: \valid(raster->work.now.span.fill.textured.pen.depth + (0 .. n - 1));
     assigns raster->work.now.span.linear, raster->work.now.span.by, raster->work.now.span.left, colour[..], depth[..] \from n;
-    assigns raster->work.now.span.fill.pen.w \from n;
-    assigns raster->work.now.span.fill.pen.colour \from raster->work.now.span.fill.pen.colour;
-    assigns raster->work.now.span.fill.pen.depth \from raster->work.now.span.fill.pen.depth;
+    assigns raster->work.now.span.fill.textured.pen.w \from n;
+    assigns raster->work.now.span.fill.textured.pen.colour \from raster->work.now.span.fill.textured.pen.colour;
+    assigns raster->work.now.span.fill.textured.pen.depth \from raster->work.now.span.fill.textured.pen.depth;
     assigns raster->work.now.span.limit, raster->work.now.span.first, raster->work.now.span.is_ready \from n;
-    ensures drawn: raster->work.now.span.fill.pen.colour == \old(raster->work.now.span.fill.pen.colour) + n;
-    ensures drawn_depth: raster->work.now.span.fill.pen.depth == \old(raster->work.now.span.fill.pen.depth) + n;
+    ensures drawn: raster->work.now.span.fill.textured.pen.colour == \old(raster->work.now.span.fill.textured.pen.colour) + n;
+    ensures drawn_depth: raster->work.now.span.fill.textured.pen.depth == \old(raster->work.now.span.fill.textured.pen.depth) + n;
     ensures work_left: IS_WORK(raster->work.now.span); */
 static void piece_of_texture(ew_raster *raster, const ew_triangle *t, int32_t n);
 
@@ -132,7 +132,7 @@ static void has(int32_t n)
 {
     ew_span_work *span = &raster.work.now.span;
     span->left = n;
-    pen_at(&span->fill.pen, &raster, ACROSS - n, ROW);
+    pen_at(&span->fill.textured.pen, &raster, ACROSS - n, ROW);
 }
 
 /* Runs, one after the other: those behind the first begin wherever a run may end. */

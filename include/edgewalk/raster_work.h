@@ -213,11 +213,11 @@ typedef struct ew_packing {
     uint8_t is_256;        /* the texture is 256 x 256                                     */
 } ew_packing;
 
-/* Rows of packed planes on their way through the machine code of arch.h, which knows the order. */
+/* What the machine code of arch.h reads while it draws rows or runs; it knows the order. */
 typedef struct ew_rows {
     const uint16_t *texels; /* to `end`: as in ew_packing                                  */
     uint32_t turn, mask;
-    uint32_t dhigh, dlow;
+    uint32_t dhigh, dlow;  /* of packed planes                                             */
     const uint16_t *rest, *end;
     ew_edge *edge;
     ew_plane32 *planes;
@@ -229,6 +229,14 @@ typedef struct ew_rows {
     uint32_t apart;        /* from a pixel's depth to its colour, bytes                    */
     int32_t left;          /* rows                                                         */
     uint32_t reached;      /* not 0: some pixel was                                        */
+    /* for tangents only: */
+    uint32_t w;            /* the row's first pixel's 1/z, uq1.31                          */
+    const uint16_t *recip; /* the table                                                    */
+    uint32_t u_shift, v_shift, u_base, v_base; /* as in ew_triangle                        */
+    uint32_t low, log2_height; /* as in ew_packing                                         */
+    int32_t sure;          /* px: longer spans are not drawn here                          */
+    uint32_t is_256;
+    int32_t shortest;      /* px: shorter runs are not drawn here, but for a piece's last  */
 } ew_rows;
 
 /* Where the next pixel goes, and 1/z there, uq1.31. */
@@ -312,9 +320,12 @@ typedef struct ew_span_work {
     int32_t left;      /* pixels of the piece                                             */
     int32_t first;     /* pixels of the run that a span began with, where is_ready         */
     uint8_t is_ready;  /* `by` and `limit` are those of all spans of the triangle          */
+    uint8_t has_rows;  /* fill.textured.rows is made ready for the triangle's runs         */
     union {
-        ew_pen pen;
-        ew_rows rows;
+        struct {
+            ew_pen pen;
+            ew_rows rows;
+        } textured;
         struct {
             ew_attribute_run attributes;
             ew_position position;

@@ -72,6 +72,9 @@ EW_ALWAYS_INLINE int ew_zeros_of(uint32_t w) { return ew_clz32(w | 1u); }
     (defined(__thumb2__) || !defined(__clang__))
 #define EW_HAS_PIXEL_LOOP 1
 typedef char ew_rows_order[offsetof(ew_rows, edge) == 28 && offsetof(ew_rows, depth) == 56 && offsetof(ew_rows, reached) == 72 &&
+                           offsetof(ew_rows, u_shift) == 84 && offsetof(ew_rows, shortest) == 116 && offsetof(ew_linear, dv) == 20 &&
+                           offsetof(ew_span_work, fill.textured.rows) == 124 && offsetof(ew_span_work, limit) == 76 &&
+                           offsetof(ew_span_work, left) == 92 && offsetof(ew_span_work, fill.textured.pen) == 104 &&
                            offsetof(ew_edge, dy) == 16 && sizeof(ew_edge) == 20 && sizeof(ew_plane32) == 12 ? 1 : -1];
 #if defined(__thumb2__)
 #define EW_PIXEL(index) \
@@ -205,6 +208,213 @@ EW_ALWAYS_INLINE void ew_walk_rows(ew_rows *rows, int is_256)
                          : EW_ROWS_OPERANDS : [s] "r"(s) : "cc", "memory");
     }
 }
+/* A run of n > 0 pixels with a tangent, where the table's reciprocal will do: what `tangent`, `pack` and
+ * fill_packed (span.c) do, in 62 instructions besides the pixels where GCC needs 90. On the way in w', u, v and
+ * their steps are in r1, r4, r10 and r3, r9, r11, z in r6, n in r8. Operands as in EW_RUN_OPERANDS. */
+#define EW_TANGENT \
+    "lsrs r5, r8, #1\n\t"                          /* half                         */ \
+    "mla r1, r3, r5, r1\n\t"                       /* w' there, and its reciprocal */ \
+    "clz r2, r1\n\t" \
+    "lsls r1, r1, r2\n\t" \
+    "ubfx r12, r1, %[to_index], %[index_bits]\n\t" \
+    "ldr lr, [r0, #80]\n\t"                        /* recip                        */ \
+    "add r12, lr, r12, lsl #1\n\t" \
+    "ubfx r1, r1, %[to_fraction], #16\n\t" \
+    "ldrh lr, [r12]\n\t" \
+    "ldrh r12, [r12, #2]\n\t" \
+    "sub r12, lr, r12\n\t" \
+    "mul r1, r12, r1\n\t" \
+    "add lr, lr, #65536\n\t" \
+    "lsrs r1, r1, #2\n\t" \
+    "rsb r1, r1, lr, lsl #14\n\t" \
+    EW_TANGENT_OF("r4", "r9") EW_TANGENT_OF("r10", "r11") \
+    "add r1, r0, #84\n\t" \
+    "ldm r1, {r1, r2, r3, r5, r12, lr}\n\t"        /* shifts, bases, low, log2_height */ \
+    "lsls r4, r4, r1\n\t" \
+    "adds r4, r4, r3\n\t" \
+    "lsl r9, r9, r1\n\t" \
+    "lsl r10, r10, r2\n\t" \
+    "add r10, r10, r5\n\t" \
+    "lsl r11, r11, r2\n\t" \
+    "bic r4, r4, r12\n\t" \
+    "bic r9, r9, r12\n\t" \
+    "rsb r12, lr, #32\n\t" \
+    "lsr r1, r10, r12\n\t" \
+    "orrs r4, r4, r1\n\t" \
+    "asr r1, r11, r12\n\t" \
+    "add r9, r9, r1\n\t" \
+    "lsl r10, r10, lr\n\t" \
+    "lsl r11, r11, lr\n\t"
+/* a at the tangent's pixel over w', the slope, and a at the run's first pixel */
+#define EW_TANGENT_OF(a, da) \
+    "mla " a ", " da ", r5, " a "\n\t" \
+    "lsl " a ", " a ", r2\n\t" \
+    "smull r12, " a ", r1, " a "\n\t" \
+    "lsl r12, " a ", #2\n\t" \
+    "smull lr, r12, r3, r12\n\t" \
+    "sub " da ", " da ", r12\n\t" \
+    "lsl " da ", " da ", r2\n\t" \
+    "smull r12, " da ", r1, " da "\n\t" \
+    "mls " a ", " da ", r5, " a "\n\t"
+/* r1 is 1/z, r2 its step, r5 as `apart` less the step of z */
+#define EW_RUN_PIXELS \
+    "ldr r12, [r0]\n\t"                            /* texels                       */ \
+    "ldr r3, [r0, #112]\n\t"                       /* is_256                       */ \
+    "cmp r3, #0\n\tbeq 16f\n\t" \
+    EW_PIXELS("uxth %[t], %[high], ror #24\n\t") \
+    "\n\tb 17f\n" \
+    "16:\tpush {r0}\n\t" \
+    "ldrd lr, r0, [r0, #4]\n\t"                    /* turn, mask                   */ \
+    EW_PIXELS("ror %[t], %[high], lr\n\tand %[t], %[t], r0\n\t") \
+    "\n\tpop {r0}\n" \
+    "17:"
+#define EW_RUN_OPERANDS \
+    [w] "=&r"(w), [dw] "=&r"(dw), [t] "=&r"(t), [high] "=&r"(high), [apart] "=&r"(apart), [z] "=&r"(z), [n] "=&r"(n), \
+        [dhigh] "=&r"(dhigh), [low] "=&r"(low), [dlow] "=&r"(dlow), [texels] "=&r"(texels), [turn] "=&r"(turn)
+#define EW_RUN_REGISTERS \
+    register uint32_t w __asm__("r1"), dw __asm__("r2"), t __asm__("r3"), high __asm__("r4"), apart __asm__("r5"); \
+    register uint32_t z __asm__("r6"), dhigh __asm__("r9"), low __asm__("r10"), dlow __asm__("r11"); \
+    register uint32_t texels __asm__("r12"), turn __asm__("lr")
+#define EW_RECIP_OPERANDS \
+    [to_index] "i"(31 - EW_RECIP_BITS), [index_bits] "i"(EW_RECIP_BITS), [to_fraction] "i"(15 - EW_RECIP_BITS)
+
+/* Rows of one run each, until rows->left is 0 or a row is longer than rows->sure, which is left to the caller: 115
+ * instructions a row besides its pixels where GCC needs 190. */
+#define EW_HAS_TANGENT_LOOP 1
+EW_ALWAYS_INLINE void ew_walk_tangents(ew_rows *rows)
+{
+    register ew_rows *s __asm__("r0") = rows;
+    register uint32_t n __asm__("r8");
+    EW_RUN_REGISTERS;
+    __asm__ volatile("15:\tadd r1, r0, #28\n\t"
+                     "ldm r1, {r1, r2, r3, r4, r5}\n\t"             /* edge, planes, x0, x1, column */
+                     "ldr r6, [r1]\n\t"                             /* x, from the left edge        */
+                     "ldr r8, [r1, #20]\n\t"                        /* n, from the right one        */
+                     "cmp r6, r3\n\tit lt\n\tmovlt r6, r3\n\t"
+                     "cmp r8, r4\n\tit gt\n\tmovgt r8, r4\n\t"
+                     "ldr r4, [r0, #108]\n\t"                       /* sure                         */
+                     "subs r8, r8, r6\n\t"
+                     "ble 18f\n\t"
+                     "cmp r8, r4\n\t"
+                     "bgt 19f\n\t"
+                     "subs r5, r6, r5\n\t"                          /* columns                      */
+                     "ldrd r3, r4, [r0, #56]\n\t"                   /* depth, stride                */
+                     "add r6, r3, r6, lsl #1\n\t"                   /* z                            */
+                     "adds r3, r3, r4\n\t"
+                     "str r3, [r0, #56]\n\t"
+                     "ldmia r2!, {r1, r3, r12}\n\t"                 /* of 1/z: row, dx, dy          */
+                     "add r12, r12, r1\n\t"
+                     "str r12, [r2, #-12]\n\t"
+                     "mla r1, r3, r5, r1\n\t"
+                     "ldmia r2!, {r4, r9, r12}\n\t"                 /* u */
+                     "add r12, r12, r4\n\t"
+                     "str r12, [r2, #-12]\n\t"
+                     "mla r4, r9, r5, r4\n\t"
+                     "ldm r2, {r10, r11, r12}\n\t"                  /* v */
+                     "add r12, r12, r10\n\t"
+                     "str r12, [r2]\n\t"
+                     "mla r10, r11, r5, r10\n\t"
+                     "ldr r2, [r0, #48]\n\t"                        /* lead                         */
+                     "lsr r2, r1, r2\n\t"
+                     "lsls r2, r2, #1\n\t"
+                     "str r2, [r0, #76]\n\t"                        /* w                            */
+                     EW_TANGENT
+                     "ldr r1, [r0, #76]\n\t"
+                     "ldr r2, [r0, #52]\n\t"                        /* dw                           */
+                     "ldr r5, [r0, #64]\n\t"                        /* apart                        */
+                     "str r8, [r0, #72]\n\t"                        /* reached                      */
+                     "subs r5, r5, #2\n\t"
+                     EW_RUN_PIXELS
+                     "\n14:\tldr r1, [r0, #28]\n\t" EW_EDGES_STEP
+                     "ldr r2, [r0, #68]\n\t"                        /* left                         */
+                     "subs r2, r2, #1\n\t"
+                     "str r2, [r0, #68]\n\t"
+                     "bne 15b\n\t"
+                     "b 19f\n"
+                     "18:\tldm r2, {r1, r3, r4, r5, r6, r8, r9, r10, r11}\n\t" /* no pixel: planes and rows only */
+                     "adds r1, r1, r4\n\t"
+                     "add r5, r5, r8\n\t"
+                     "add r9, r9, r11\n\t"
+                     "str r1, [r2]\n\t"
+                     "str r5, [r2, #12]\n\t"
+                     "str r9, [r2, #24]\n\t"
+                     "ldrd r1, r3, [r0, #56]\n\t"
+                     "adds r1, r1, r3\n\t"
+                     "str r1, [r0, #56]\n\t"
+                     "b 14b\n"
+                     "19:"
+                     : EW_RUN_OPERANDS
+                     : [s] "r"(s), EW_RECIP_OPERANDS
+                     : "cc", "memory");
+}
+/* Runs of a piece, the first of m > 0 pixels, as long as they pay: what the twin in runs_of_texture (span.c) does, in
+ * 97 instructions a run besides its pixels where GCC needs 132. Returns what that does. */
+EW_ALWAYS_INLINE int32_t ew_walk_runs(ew_rows *rows, int32_t m)
+{
+    register ew_rows *s __asm__("r0") = rows;
+    register int32_t n __asm__("r8") = m;
+    EW_RUN_REGISTERS;
+    __asm__ volatile("15:\tsub r1, r0, #124\n\t"
+                     "ldm r1, {r1, r3, r4, r9, r10, r11}\n\t"       /* linear                       */
+                     "mla r2, r3, r8, r1\n\t"
+                     "str r2, [r0, #-124]\n\t"
+                     "mla r2, r9, r8, r4\n\t"
+                     "str r2, [r0, #-116]\n\t"
+                     "mla r2, r11, r8, r10\n\t"
+                     "str r2, [r0, #-108]\n\t"
+                     "ldrd r5, r6, [r0, #-20]\n\t"                 /* the pen's colour and depth   */
+                     "str r8, [r0, #72]\n\t"
+                     "add r5, r5, r8, lsl #1\n\t"
+                     "add r12, r6, r8, lsl #1\n\t"
+                     "strd r5, r12, [r0, #-20]\n\t"
+                     EW_TANGENT
+                     "ldrd r1, r2, [r0, #-12]\n\t"                 /* its w, dw                    */
+                     "ldr r5, [r0, #64]\n\t"                       /* apart                        */
+                     "subs r5, r5, #2\n\t"
+                     EW_RUN_PIXELS
+                     "str r1, [r0, #-12]\n\t"
+                     "ldr r8, [r0, #72]\n\t"
+                     "sub r1, r0, #48\n\t"
+                     "ldm r1, {r3, r4, r5, r6, r9}\n\t"            /* scale, fall, longest, down, left */
+                     "subs r9, r9, r8\n\t"
+                     "str r9, [r0, #-32]\n\t"
+                     "beq 19f\n\t"
+                     "ldr r1, [r0, #-124]\n\t"                     /* the next run's, as ew_run_after */
+                     "lsrs r1, r1, #15\n\t"
+                     "muls r1, r3, r1\n\t"
+                     "lsrs r1, r6\n\t"
+                     "cmp r4, #0\n\t"
+                     "beq 13f\n"
+                     "11:\tadd r2, r4, r8, lsl #2\n\t"
+                     "mul r2, r2, r8\n\t"
+                     "cmp r1, r2, lsl #6\n\t"
+                     "bcs 12f\n\t"
+                     "sub r8, r8, #1\n\t"
+                     "b 11b\n"
+                     "13:\tcmp r8, r5\n\t"
+                     "bge 12f\n\t"
+                     "add r2, r8, #1\n\t"
+                     "mul r3, r2, r2\n\t"
+                     "cmp r1, r3, lsl #8\n\t"
+                     "bcc 12f\n\t"
+                     "mov r8, r2\n\t"
+                     "b 13b\n"
+                     "12:\tcmp r8, r9\n\t"
+                     "it ge\n\tmovge r8, r9\n\t"
+                     "bge 15b\n\t"
+                     "ldr r2, [r0, #116]\n\t"                      /* shortest                     */
+                     "cmp r8, r2\n\t"
+                     "bge 15b\n\t"
+                     "b 18f\n"
+                     "19:\tmov r8, #0\n"
+                     "18:"
+                     : [w] "=&r"(w), [dw] "=&r"(dw), [t] "=&r"(t), [high] "=&r"(high), [apart] "=&r"(apart), [z] "=&r"(z),
+                       [n] "+r"(n), [dhigh] "=&r"(dhigh), [low] "=&r"(low), [dlow] "=&r"(dlow), [texels] "=&r"(texels),
+                       [turn] "=&r"(turn)
+                     : [s] "r"(s), EW_RECIP_OPERANDS
+                     : "cc", "memory");
+    return n;
+}
 #define EW_HAS_EDGES_STEP 1
 EW_ALWAYS_INLINE void ew_edges_step(ew_edge *edge)
 {
@@ -213,6 +423,12 @@ EW_ALWAYS_INLINE void ew_edges_step(ew_edge *edge)
 }
 #undef EW_ROWS
 #undef EW_ROWS_OPERANDS
+#undef EW_TANGENT
+#undef EW_TANGENT_OF
+#undef EW_RUN_PIXELS
+#undef EW_RUN_OPERANDS
+#undef EW_RUN_REGISTERS
+#undef EW_RECIP_OPERANDS
 #undef EW_EDGES_STEP
 #undef EW_EDGE_STEP
 #else
@@ -384,6 +600,9 @@ EW_ALWAYS_INLINE void ew_edges_step(ew_edge *edge)
 #endif
 #ifndef EW_HAS_ROW_LOOP
 #define EW_HAS_ROW_LOOP 0
+#endif
+#ifndef EW_HAS_TANGENT_LOOP
+#define EW_HAS_TANGENT_LOOP 0
 #endif
 #ifndef EW_HAS_EDGES_STEP
 EW_ALWAYS_INLINE void ew_edges_step(ew_edge *edge)
