@@ -433,6 +433,9 @@ static void shaded(ew_triangle *t, ew_differences *of, const ew_corners *c, cons
     }
 }
 
+/* w', of 31 bits. */
+static uint32_t scaled(uint32_t w, int lead) { return (w << lead) >> 1; }
+
 /* Planes begin at the box's first pixel and are taken from there in whole steps: wherever a scissor cuts, the
  * bits are the same. */
 int ew_setup(ew_raster *raster)
@@ -471,11 +474,12 @@ int ew_setup(ew_raster *raster)
     t->newton = t->rung == EW_RUNG_EXACT || (t->rung != EW_RUNG_TABLE && newton_in_runs);
 
     t->w_lead = (uint8_t)smaller((uint32_t)ew_clz32(w_max + w_max / 2), 24);
-    for (int i = 0; i < 3; i++) w[i] = (v[i]->w << t->w_lead) >> 1;
-    for (int k = 0; k < 2; k++) of->d[EW_PLANE_W][k] = (int32_t)w[k + 1] - (int32_t)w[0];
+    w[0] = scaled(v[0]->w, t->w_lead), w[1] = scaled(v[1]->w, t->w_lead), w[2] = scaled(v[2]->w, t->w_lead);
+    const uint32_t least = scaled(w_min, t->w_lead), most = scaled(w_max, t->w_lead);
+    of->d[EW_PLANE_W][0] = (int32_t)w[1] - (int32_t)w[0], of->d[EW_PLANE_W][1] = (int32_t)w[2] - (int32_t)w[0];
     const int affine = t->rung == EW_RUNG_AFFINE;
-    for (int k = 0; k < 2; k++) of->d[EW_PLANE_U][k] = of->d[EW_PLANE_V][k] = 0;
     if (has_texture) textured(t, of, raster, c, w, affine);
+    else of->d[EW_PLANE_U][0] = of->d[EW_PLANE_V][0] = of->d[EW_PLANE_U][1] = of->d[EW_PLANE_V][1] = 0;
     if (has_shades) shaded(t, of, c, w, affine);
     of->a0[EW_PLANE_W] = w[0];
     for (int i = EW_PLANE_U; i <= t->attributes; i++) of->a0[i] = moved(of->d[i], &raster->work.now.setup.move);
@@ -484,8 +488,7 @@ int ew_setup(ew_raster *raster)
 
     t->walk = t->plain == PLAIN_ALWAYS && t->attributes == 2 ? WALK_TEXTURE : WALK_ANY;
     t->column = (uint16_t)c->from;
-    uint32_t least = smaller(smaller(w[0], w[1]), w[2]);
-    t->is_wide = (uint8_t)!is_narrow(b, c, least, larger(larger(w[0], w[1]), w[2]), t->uv_bits);
+    t->is_wide = (uint8_t)!is_narrow(b, c, least, most, t->uv_bits);
     if (t->is_wide) wide_planes(t, b, c, of, least);
     else narrow_planes(t, &raster->work.now.setup.weights, b, of);
     if (may_be_packed(t, c)) {
