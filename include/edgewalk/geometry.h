@@ -10,6 +10,7 @@
 
 #include "error.h"
 #include "fixed.h"
+#include "picture_work.h"
 #include "raster.h"
 
 /* A corner as it lies in flash: 10 bytes, aligned to 2. */
@@ -75,16 +76,6 @@ int ew_transform_set(ew_transform *transform, const ew_projection *projection,
 void ew_transform_vertices(const ew_transform *transform, const ew_vertex16 *in, uint32_t count,
                            ew_screen_vertex *out);
 
-/* A corner of a clipped triangle; the clipper's own. */
-typedef struct ew_clip_vertex {
-    int64_t x, y, w; /* in one unit: src/geometry/clip.c                                   */
-    ew_q20_12 u, v;
-    int8_t corner;   /* of the triangle, 0 to 2; -1 for one without a place on the screen yet */
-    uint16_t colour[3]; /* uq8.8 red, green, blue                                          */
-} ew_clip_vertex;
-
-enum { EW_CLIP_MAX = 8 }; /* a triangle cut by five planes */
-
 /* Triangles of one material. Nothing is copied. */
 typedef struct ew_mesh {
     const ew_vertex16 *vertices;
@@ -100,26 +91,33 @@ typedef struct ew_scene_work {
     ew_projection projection;
     ew_viewport viewport;
     const ew_mat34 *view;
-    ew_mat34 node_view, model_view;
+    ew_mat34 node_view;
+    union {
+        ew_mat34 model_view; /* until the transform is made of it                           */
+        ew_mesh mesh;
+    } primitive_at_hand;
     ew_screen_vertex *vertices;
-    ew_mesh mesh;
     int32_t drawn;
     uint32_t primitive, left; /* the next one's number, and how many the node has left      */
 } ew_scene_work;
 
-/* The memory of the geometry layer: the caller's, about 1100 bytes. What is kept here takes no
+enum { EW_FEW = 8 };
+
+/* The memory of the geometry layer: the caller's, about 560 bytes. What is kept here takes no
  * room on the stack while a triangle is drawn. */
 typedef struct ew_geometry {
     ew_raster *raster;
+    uint8_t corner_count, corner_next; /* of a clipped triangle's: how many, and the next one's number */
     ew_transform transform;
     /* What follows holds nothing between two calls. */
-    ew_raster_vertex corner[3]; /* the triangle at hand                                    */
-    ew_clip_vertex polygon[2][EW_CLIP_MAX];
-    const ew_clip_vertex *clipped; /* the one of the two with the clipper's result         */
-    int clipped_count, clipped_next;
-    const ew_screen_vertex *clip_screen[3];
-    int64_t clip_near_w;        /* the near distance in the clipper's unit                 */
-    ew_scene_work scene;
+    union {
+        ew_raster_vertex corner[EW_CLIP_MAX]; /* the triangle at hand: of 0, 1, 2, or a fan around 0 */
+        ew_screen_vertex few[EW_FEW];         /* while a picture's triangles are listed            */
+    } at_hand;
+    union {
+        ew_scene_work scene;
+        ew_picture_work picture;
+    } work;
 } ew_geometry;
 
 /* Points the layer at a raster context. */

@@ -310,6 +310,21 @@ typedef struct ew_sampler {
     uint8_t cuts;      /* EW_COLOUR_KEY, EW_ALPHA_MASK: by which this level leaves texels out */
 } ew_sampler;
 
+/* ---- between two triangles (src/geometry/clip.c) ---- */
+
+/* A corner of a triangle while it is clipped; the clipper's own. */
+typedef struct ew_clip_vertex {
+    int64_t x, y, w; /* in one unit: src/geometry/clip.c                                   */
+    ew_q20_12 u, v;
+    int8_t corner;   /* of the triangle, 0 to 2; -1 for one without a place on the screen yet */
+    uint16_t colour[3]; /* uq8.8 red, green, blue                                          */
+} ew_clip_vertex;
+
+enum {
+    EW_CLIP_MAX = 8, /* corners of a triangle cut by five planes                            */
+    EW_CLIP_AHEAD = 2 /* so many corners what is read lies ahead of what is written: clip_by */
+};
+
 /* ---- all of it ---- */
 
 /* While spans are drawn. */
@@ -352,6 +367,7 @@ typedef struct ew_raster_work {
             uint32_t w[3]; /* of the corners, scaled                                       */
         } setup;
         ew_span_work span;
+        ew_clip_vertex polygon[EW_CLIP_MAX + EW_CLIP_AHEAD + 1]; /* while a triangle is clipped */
     } now;
 } ew_raster_work;
 

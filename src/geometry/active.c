@@ -24,15 +24,15 @@ void ew_active_init(ew_picture_work *w)
         rest -= used;
     }
     w->slots = (ew_slot *)(void *)at;
-    w->slot_count = w->vertices;
-    if (w->slot_count > rest / SHARE / sizeof *w->slots) w->slot_count = (uint32_t)(rest / SHARE / sizeof *w->slots);
-    if (w->slot_count > UINT16_MAX) w->slot_count = UINT16_MAX;
+    size_t slots = rest / SHARE / sizeof *w->slots;
+    if (slots > UINT16_MAX) slots = UINT16_MAX;
+    w->slot_count = (uint16_t)(slots < w->vertices ? slots : w->vertices);
     w->hand = 0;
     for (uint32_t i = 0; i < w->slot_count; i++) {
         w->slots[i].vertex.y = -EW_GUARD_PX * 4096; /* above everything */
         w->slots[i].number = EW_NO_VERTEX;
     }
-    w->list.places = (uint8_t *)(w->slots + (w->slot_count + 1u) / 2u * 2u);
+    w->list.places = at + (w->slot_count * sizeof *w->slots + EW_PLACE_BYTES - 1u) / EW_PLACE_BYTES * EW_PLACE_BYTES;
     w->list.ended = EW_NO_PLACE;
     init_places(w, (size_t)(w->end_of_memory - w->list.places));
 }
@@ -119,8 +119,8 @@ static EW_OWN_FRAME void take_slot(ew_picture_work *w, uint32_t number, const ew
         slot->vertex = *v;
         slot->number = number;
         /* those of vertices without a place begin in the first band there is */
-        if (v->outcode & (EW_OUT_NEAR | EW_OUT_GUARD)) slot->vertex.y = w->top * 4096;
-        w->map[number] = (uint16_t)w->hand;
+        if (ew_is_placeless(v->outcode)) slot->vertex.y = (ew_q20_12)w->top * 4096;
+        w->map[number] = w->hand;
         return;
     }
 }
@@ -139,7 +139,7 @@ static inline const ew_screen_vertex *find_vertex(ew_picture_work *w, const ew_m
     const uint16_t at = w->map[number];
     if (at < w->slot_count && w->slots[at].number == number) return &w->slots[at].vertex;
     ew_transform_vertices(&w->at->transform, &mesh->vertices[vertex], 1, out);
-    w->counts->transformed++;
+    w->transformed++;
     take_slot(w, number, out);
     return out;
 }
@@ -160,7 +160,7 @@ static EW_OWN_FRAME int go_on(ew_picture_work *w, uint32_t number)
     w->behind = w->first_triangle + object->mesh.index_count / 3u;
     if (w->used == w->object) return EW_OK;
     w->used = w->object;
-    for (int k = 0; k < 3; k++) w->geometry->corner[k].colour = ew_white; /* without colours in the mesh they stay */
+    for (int k = 0; k < 3; k++) w->geometry->at_hand.corner[k].colour = ew_white; /* without colours in the mesh they stay */
     return ew_raster_set_material(w->geometry->raster, &object->material);
 }
 
@@ -177,27 +177,28 @@ static inline int go_to(ew_picture_work *w, uint32_t number)
  * is over before the whole row is known: even what ends on it is kept or late. */
 enum { DONE, KEPT, DRAW, DRAW_LATE, DRAW_FAN };
 
-static int begin(ew_picture_work *w)
+static int begin_with(ew_picture_work *w, const ew_raster_vertex *third)
 {
-    ew_raster_vertex *const v = w->geometry->corner;
-    const int result = ew_raster_begin(w->geometry->raster, &v[0], &v[1], &v[2], (uint16_t)w->end);
-    w->counts->set_up += result > 0;
+    const int result = ew_raster_begin(w->geometry->raster, w->geometry->at_hand.corner, third - 1, third, w->end);
+    w->set_up += result > 0;
     return result;
 }
+
+static int begin(ew_picture_work *w) { return begin_with(w, &w->geometry->at_hand.corner[2]); }
 
 /* Each triangle of a clipped one's fan: all of them are kept, or none. */
 static EW_OWN_FRAME int keep_fan(ew_picture_work *w)
 {
     ew_place *const link = w->list.link, *to = link;
     const ew_place behind = *link;
-    while (ew_clip_next(w->geometry)) {
-        const int result = begin(w);
+    for (const ew_raster_vertex *third; (third = ew_clip_next(w->geometry));) {
+        const int result = begin_with(w, third);
         if (result < 0) return result;
         if (result == 0) continue;
         to = keep(w, to);
         if (to) continue;
         while (*link != behind) drop(w, link);
-        w->geometry->clipped_next = 0;
+        w->geometry->corner_next = 2;
         return DRAW_FAN;
     }
     return *link == behind ? DONE : KEPT;
@@ -206,19 +207,11 @@ static EW_OWN_FRAME int keep_fan(ew_picture_work *w)
 /* Sets the next triangle of the fan up: 1, 0 behind the last, or an error. */
 static EW_OWN_FRAME int next_of_fan(ew_picture_work *w)
 {
-    while (ew_clip_next(w->geometry)) {
-        const int result = begin(w);
+    for (const ew_raster_vertex *third; (third = ew_clip_next(w->geometry));) {
+        const int result = begin_with(w, third);
         if (result) return result;
     }
     return 0;
-}
-
-static EW_OWN_FRAME int clipped(ew_picture_work *w)
-{
-    for (int k = 0; k < 3; k++) w->geometry->clip_screen[k] = &w->screen[k];
-    w->geometry->transform = w->at->transform;
-    ew_clip_triangle(w->geometry, &w->at->mesh, corners_of(w));
-    return DRAW_FAN;
 }
 
 /* Makes the triangle at hand ready. Returns DONE, DRAW for `begin` or DRAW_FAN for next_of_fan. */
@@ -227,18 +220,21 @@ static EW_OWN_FRAME int make_ready(ew_picture_work *w)
     const ew_mesh *mesh = &w->at->mesh;
     const uint16_t *const index = corners_of(w);
     const int32_t uv_unit = (int32_t)1 << (12 - mesh->uv_fraction_bits);
-    ew_raster_vertex *const v = w->geometry->corner;
-    ew_screen_vertex *const s = w->screen;
+    ew_raster_vertex *const v = w->geometry->at_hand.corner;
+    uint8_t outcode[3];
     for (int k = 0; k < 3; k++) {
-        const ew_screen_vertex *from = find_vertex(w, mesh, index[k], &s[k]);
-        s[k] = *from; /* the slot may be another's before the triangle is clipped */
+        ew_screen_vertex made;
+        const ew_screen_vertex *from = find_vertex(w, mesh, index[k], &made);
         ew_corner_from(&v[k], &mesh->vertices[index[k]], from, uv_unit);
         if (mesh->colours) v[k].colour = mesh->colours[index[k]];
+        outcode[k] = from->outcode;
     }
-    const int any = s[0].outcode | s[1].outcode | s[2].outcode;
+    const int any = outcode[0] | outcode[1] | outcode[2];
     if (!any) return DRAW; /* one that faces away is seen to by the raster */
-    if (s[0].outcode & s[1].outcode & s[2].outcode & ~EW_OUT_GUARD) return DONE;
-    return any & (EW_OUT_NEAR | EW_OUT_GUARD) ? clipped(w) : DRAW;
+    if (outcode[0] & outcode[1] & outcode[2] & ~EW_OUT_GUARD) return DONE;
+    if (!ew_is_placeless(any)) return DRAW;
+    ew_clip_triangle(w->geometry, &w->at->transform, mesh, index, ew_placeless(outcode[0], outcode[1], outcode[2]));
+    return DRAW_FAN;
 }
 
 /* Sets up what make_ready has made; kept ones stand at *list.link then. Returns one of the above or an
@@ -281,7 +277,7 @@ static inline int take(ew_picture_work *w, uint32_t number, int is_late)
     if (is_late) {
         w->late_next++;
         w->active--;
-        w->counts->again++;
+        w->again++;
     } else {
         w->next++;
     }
@@ -385,7 +381,7 @@ int ew_draw_band(ew_picture_work *w)
         }
     }
     merge_late(w);
-    if (w->active > w->counts->most_active) w->counts->most_active = w->active;
+    if (w->active > w->most_active) w->most_active = w->active;
     return result < 0 ? result : EW_OK;
 }
 
@@ -447,7 +443,7 @@ static EW_OWN_FRAME void start_showing(ew_picture_work *w)
 static EW_OWN_FRAME void end_showing(ew_picture_work *w)
 {
     merge_late(w);
-    if (w->active > w->counts->most_active) w->counts->most_active = w->active;
+    if (w->active > w->most_active) w->most_active = w->active;
 }
 
 /* Small: the deepest calls lie below it. */
@@ -507,7 +503,7 @@ int ew_draw_late(ew_picture_work *w)
         if (!is_seen(w->row, w->entries[i])) continue;
         result = go_to(w, w->entries[i]);
         if (result) break;
-        w->counts->again++;
+        w->again++;
         result = draw_ready(w, make_ready(w));
     }
     return result < 0 ? result : EW_OK;

@@ -55,6 +55,7 @@ static int64_t distance(const ew_clip_vertex *v, int plane, int64_t near_w)
     return d < 0 && v->corner >= 0 ? 0 : d;
 }
 
+/* `out` may be one of the two. */
 static EW_OWN_FRAME void cut(ew_clip_vertex *out, const ew_clip_vertex *inner, int64_t d_inner,
                 const ew_clip_vertex *outer, int64_t d_outer)
 {
@@ -71,19 +72,24 @@ static EW_OWN_FRAME void cut(ew_clip_vertex *out, const ew_clip_vertex *inner, i
     out->corner = -1;
 }
 
-/* Sutherland and Hodgman's step: `in` cut by one plane. Each plane adds one corner at most. */
-static EW_OWN_FRAME int clip_by(ew_clip_vertex *out, const ew_clip_vertex *in, int count, int plane,
-                                int64_t near_w)
+/* Sutherland and Hodgman's step: the polygon cut by one plane, in place. Each plane adds one corner at most, and
+ * where corners go in a line along the plane, give or take a unit, two: so many is what is read ahead of what
+ * is written. */
+static EW_OWN_FRAME int clip_by(ew_clip_vertex *polygon, int count, int plane, int64_t near_w)
 {
+    const ew_clip_vertex *a = polygon + EW_CLIP_AHEAD, *const end = a + count;
+    for (int i = count; i-- > 0;) polygon[i + EW_CLIP_AHEAD] = polygon[i];
+    polygon[count + EW_CLIP_AHEAD] = polygon[0];
     int made = 0;
-    for (int i = 0; i < count; i++) {
-        const ew_clip_vertex *a = &in[i], *b = &in[i + 1 == count ? 0 : i + 1];
-        int64_t da = distance(a, plane, near_w), db = distance(b, plane, near_w);
-        if (da >= 0) out[made++] = *a;
-        if ((da >= 0) == (db >= 0)) continue;
-        if (da >= 0) cut(&out[made], a, da, b, db);
-        else cut(&out[made], b, db, a, da);
-        if (plane == PLANE_NEAR) out[made].w = near_w;
+    for (int64_t da = distance(a, plane, near_w), db; a < end && made < EW_CLIP_MAX; a++, da = db) {
+        const ew_clip_vertex *b = a + 1;
+        db = distance(b, plane, near_w);
+        const int is_in = da >= 0, crosses = is_in != (db >= 0);
+        if (is_in) polygon[made++] = *a;
+        if (!crosses || made == EW_CLIP_MAX) continue;
+        if (is_in) cut(&polygon[made], a, da, b, db);
+        else cut(&polygon[made], b, db, a, da);
+        if (plane == PLANE_NEAR) polygon[made].w = near_w;
         made++;
     }
     return made;
@@ -107,47 +113,47 @@ static ew_q20_12 within_guard(ew_q20_12 a)
     return a > guard ? guard : a < -guard ? -guard : a;
 }
 
-/* The homogeneous corners of a triangle, in the clipper's unit. */
-static EW_OWN_FRAME void polygon_from(ew_clip_vertex polygon[3], const clip_unit *unit, const ew_transform *t,
-                                     const ew_mesh *mesh, const uint16_t index[3], const ew_screen_vertex *const screen[3])
+/* Where the places of a triangle's corners wait until the polygon is known: behind those that come before them there. */
+enum { PLACES = EW_CLIP_MAX - 3 };
+
+/* The homogeneous corners of the triangle at hand, in the clipper's unit. */
+static EW_OWN_FRAME void polygon_from(ew_clip_vertex polygon[3], ew_raster_vertex corner[EW_CLIP_MAX], const clip_unit *unit,
+                                      const ew_transform *t, const ew_mesh *mesh, const uint16_t index[3], unsigned placeless)
 {
-    const int32_t uv_unit = (int32_t)1 << (12 - mesh->uv_fraction_bits);
     for (int i = 0; i < 3; i++) {
-        const ew_vertex16 *v = &mesh->vertices[index[i]];
+        const ew_raster_vertex *v = &corner[i];
         ew_homogeneous_vertex h;
-        ew_homogeneous(&h, t, v);
+        ew_homogeneous(&h, t, &mesh->vertices[index[i]]);
         polygon[i].x = shifted(h.x, unit->down_x);
         polygon[i].y = shifted(h.y, unit->down_y);
         polygon[i].w = shifted(h.w, unit->down_w);
-        polygon[i].u = v->u * uv_unit;
-        polygon[i].v = v->v * uv_unit;
-        polygon[i].corner = screen[i]->outcode & (EW_OUT_NEAR | EW_OUT_GUARD) ? -1 : (int8_t)i;
-        const ew_colour888 *c = mesh->colours ? &mesh->colours[index[i]] : &ew_white;
-        polygon[i].colour[0] = (uint16_t)(c->r * 256u);
-        polygon[i].colour[1] = (uint16_t)(c->g * 256u);
-        polygon[i].colour[2] = (uint16_t)(c->b * 256u);
+        polygon[i].u = v->u;
+        polygon[i].v = v->v;
+        polygon[i].corner = placeless >> i & 1u ? -1 : (int8_t)i;
+        polygon[i].colour[0] = (uint16_t)(v->colour.r * 256u);
+        polygon[i].colour[1] = (uint16_t)(v->colour.g * 256u);
+        polygon[i].colour[2] = (uint16_t)(v->colour.b * 256u);
+        corner[PLACES + i] = *v;
     }
 }
 
-/* Corner i of the clipped polygon to its place in the fan: g->corner. */
-static EW_OWN_FRAME void clip_corner(ew_geometry *g, int i)
+/* A corner of the clipped polygon to its place in the fan. What a triangle's corner k left in
+ * places[k] is still there: corner 0 is the polygon's first, and behind corner 1 comes 2 or a cut. */
+static EW_OWN_FRAME void place(ew_raster_vertex *out, const ew_clip_vertex *p, const ew_raster_vertex *places,
+                               const ew_transform *t, int64_t near_w)
 {
-    const ew_clip_vertex *p = &g->clipped[i];
-    ew_raster_vertex *out = &g->corner[i < 2 ? i : 2];
-    ew_screen_vertex made;
-    if (i > 2) g->corner[1] = g->corner[2];
     if (p->corner >= 0) {
-        made = *g->clip_screen[p->corner];
+        const ew_raster_vertex *v = &places[p->corner];
+        out->x = v->x, out->y = v->y, out->w = v->w;
     } else {
+        ew_screen_vertex made;
         ew_homogeneous_vertex h;
         h.x = p->x, h.y = p->y, h.w = p->w;
-        ew_project(&made, &g->transform, &h, 0, 0, g->clip_near_w);
-        made.x = within_guard(made.x);
-        made.y = within_guard(made.y);
+        ew_project(&made, t, &h, 0, 0, near_w);
+        out->x = within_guard(made.x);
+        out->y = within_guard(made.y);
+        out->w = made.w;
     }
-    out->x = made.x;
-    out->y = made.y;
-    out->w = made.w;
     out->u = p->u;
     out->v = p->v;
     out->colour.r = (uint8_t)((p->colour[0] + 128u) >> 8); /* <= 255 256 + 128 */
@@ -155,31 +161,32 @@ static EW_OWN_FRAME void clip_corner(ew_geometry *g, int i)
     out->colour.b = (uint8_t)((p->colour[2] + 128u) >> 8);
 }
 
-EW_OWN_FRAME void ew_clip_triangle(ew_geometry *g, const ew_mesh *mesh, const uint16_t index[3])
+/* Returns how many corners are left. */
+static EW_OWN_FRAME int clip(ew_clip_vertex *polygon, int64_t near_w)
 {
-    clip_unit unit;
-    choose_unit(&unit, &g->transform);
-    ew_clip_vertex *polygon = g->polygon[0], *other = g->polygon[1];
-    polygon_from(polygon, &unit, &g->transform, mesh, index, g->clip_screen);
-    int count = 3;
-    for (int plane = PLANE_NEAR; plane < PLANE_COUNT && count >= 3; plane++) {
+    int count = clip_by(polygon, 3, PLANE_NEAR, near_w);
+    for (int plane = PLANE_LEFT; plane < PLANE_COUNT && count >= 3; plane++) {
         if (plane == PLANE_LEFT && !leaves_guard(polygon, count)) break;
-        count = clip_by(other, polygon, count, plane, unit.near_w);
-        ew_clip_vertex *swap = polygon;
-        polygon = other;
-        other = swap;
+        count = clip_by(polygon, count, plane, near_w);
     }
-    g->clipped = polygon;
-    g->clip_near_w = unit.near_w;
-    g->clipped_count = count;
-    g->clipped_next = 0;
+    return count;
 }
 
-int ew_clip_next(ew_geometry *g)
+EW_OWN_FRAME void ew_clip_triangle(ew_geometry *g, const ew_transform *transform, const ew_mesh *mesh,
+                                   const uint16_t index[3], unsigned placeless)
 {
-    while (g->clipped_next < g->clipped_count) {
-        clip_corner(g, g->clipped_next);
-        if (g->clipped_next++ >= 2) return 1;
-    }
-    return 0;
+    ew_clip_vertex *const polygon = g->raster->work.now.polygon;
+    ew_raster_vertex *const corner = g->at_hand.corner;
+    clip_unit unit;
+    choose_unit(&unit, transform);
+    polygon_from(polygon, corner, &unit, transform, mesh, index, placeless);
+    const int count = clip(polygon, unit.near_w);
+    for (int i = 0; i < count; i++) place(&corner[i], &polygon[i], &corner[PLACES], transform, unit.near_w);
+    g->corner_count = (uint8_t)count;
+    g->corner_next = 2;
+}
+
+const ew_raster_vertex *ew_clip_next(ew_geometry *g)
+{
+    return g->corner_next < g->corner_count ? &g->at_hand.corner[g->corner_next++] : NULL;
 }

@@ -60,7 +60,7 @@ static int plan_init(memory_plan *plan, const ew_picture *picture, const ew_obje
     const uint32_t pixels = plan->stride * plan->rows; /* <= 2^24 */
     plan->colour = aligned((pixels << bits) / 8u);
     plan->depth = picture->visibility == EW_DEPTH_BUFFER ? aligned(pixels * 2u) : 0;
-    plan->least = ALIGNMENT - 1u + aligned(sizeof(ew_picture_work)) + plan->colour * picture->buffers + plan->depth +
+    plan->least = ALIGNMENT - 1u + plan->colour * picture->buffers + plan->depth + (plan->is_listed ? 0 : aligned(sizeof(ew_mesh))) +
                   aligned(plan->screen * (uint32_t)sizeof(ew_screen_vertex)) + aligned(plan->triangles * 4u) +
                   aligned(plan->vertices * 2u) + (picture->visibility == EW_DEPTH_SPANS ? aligned((uint32_t)EW_ROW_LEAST) : 0);
     return sizeof(size_t) > 2 || plan->least <= UINT16_MAX;
@@ -86,23 +86,16 @@ size_t ew_picture_bytes(const ew_picture *picture, const ew_object *objects, uin
     return (size_t)bytes;
 }
 
-/* The first thing in the memory. */
-static ew_picture_work *work_in(void *memory)
-{
-    return (void *)((uint8_t *)memory + (ALIGNMENT - (uintptr_t)memory % ALIGNMENT) % ALIGNMENT);
-}
-
 /* Lays out the memory. */
-static ew_picture_work *work_init(const memory_plan *plan, const ew_picture *picture, void *memory, size_t bytes)
+static void work_init(ew_picture_work *w, const memory_plan *plan, const ew_picture *picture, void *memory, size_t bytes)
 {
-    ew_picture_work *w = work_in(memory);
-    uint8_t *at = (uint8_t *)w + aligned(sizeof *w), *const end = (uint8_t *)memory + bytes;
+    uint8_t *at = (uint8_t *)memory + (ALIGNMENT - (uintptr_t)memory % ALIGNMENT) % ALIGNMENT;
     w->picture = picture;
-    w->rows = plan->rows, w->bands = plan->bands, w->stride = plan->stride;
+    w->rows = (uint16_t)plan->rows, w->bands = (uint16_t)plan->bands, w->stride = (uint16_t)plan->stride; /* <= 4096 */
     w->bands_at_once = 1;
     if (picture->visibility == EW_DEPTH_SPANS) { /* row by row, whatever is handed over */
         w->bands_at_once = w->rows;
-        w->bands = (uint32_t)(picture->end_row - picture->first_row);
+        w->bands = (uint16_t)(picture->end_row - picture->first_row);
         w->rows = 1;
     }
     w->is_listed = (uint8_t)plan->is_listed;
@@ -113,19 +106,15 @@ static ew_picture_work *work_init(const memory_plan *plan, const ew_picture *pic
     at += plan->colour * picture->buffers;
     w->depth = plan->depth ? (uint16_t *)(void *)at : NULL;
     at += plan->depth;
-    w->slots = (ew_slot *)(void *)at; /* the vertices of an object, where there is one band */
-    at += aligned(plan->screen * (uint32_t)sizeof(ew_screen_vertex));
     w->map = (uint16_t *)(void *)at;
     w->vertices = plan->vertices;
     at += aligned(plan->vertices * 2u);
     w->entries = (uint32_t *)(void *)at;
-    w->rest = at + aligned(plan->triangles * 4u);
-    w->end_of_memory = end;
-    const ew_picture_counts none = { 0, 0, 0, 0, 0, 0 };
-    w->own_counts = none;
-    w->counts = &w->own_counts;
+    at += aligned(plan->triangles * 4u);
+    w->slots = (ew_slot *)(void *)at; /* where there is one band, an object's mesh, then its vertices */
+    w->end_of_memory = (uint8_t *)memory + bytes;
+    w->set_up = w->again = w->transformed = w->most_active = w->crossings = w->sections = 0;
     w->entry_count = w->next = w->late_count = w->active = 0;
-    return w;
 }
 
 /* ---- sorting ---- */
@@ -147,11 +136,10 @@ static ew_screen_vertex *ring_of(const ew_picture_work *w) { return (ew_screen_v
 
 static void init_listing(ew_picture_work *w)
 {
-    const size_t slots = (size_t)(w->end_of_memory - w->rest) / sizeof(ew_screen_vertex);
-    w->slots = (ew_slot *)(void *)w->rest;
-    w->slot_count = slots < NOWHERE ? (uint32_t)slots : NOWHERE;
+    const size_t slots = (size_t)(w->end_of_memory - (uint8_t *)w->slots) / sizeof(ew_screen_vertex);
+    w->slot_count = slots < NOWHERE ? (uint16_t)slots : NOWHERE;
     if (slots < EW_FEW) {
-        w->slots = (ew_slot *)(void *)w->screen;
+        w->slots = (ew_slot *)(void *)w->geometry->at_hand.few;
         w->slot_count = EW_FEW;
     }
     w->hand = 0;
@@ -175,7 +163,7 @@ static ew_screen_vertex *take_slots(ew_picture_work *w, uint32_t n)
     for (uint32_t i = 0; i < n && slot[i].w != EW_NO_VERTEX; i++) {
         w->map[slot[i].w] = without_slot(w, slot[i].outcode, slot[i].y);
     }
-    w->hand += n;
+    w->hand = (uint16_t)(w->hand + n);
     if (w->hand == w->slot_count) w->hand = 0;
     return slot;
 }
@@ -199,7 +187,7 @@ static EW_OWN_FRAME void transform_some(ew_picture_work *w, const ew_object *obj
     n = count_new(map, n);
     ew_screen_vertex *v = take_slots(w, n);
     ew_transform_vertices(&object->transform, &object->mesh.vertices[vertex], n, v);
-    w->counts->transformed += n;
+    w->transformed += n;
     for (const ew_screen_vertex *const end = v + n; v < end; v++) {
         v->w = number++;
         v->x = ew_snapped_from_q20_12(v->x);
@@ -225,7 +213,7 @@ static int32_t first_row_of(const ew_picture_work *w, uint16_t a, uint16_t b, ui
     if (c < low) low = c;
     if (c > high) high = c;
     if (high < NOT_YET) return low < high ? (int32_t)(low - NO_SLOT) : -1;
-    return low == NEAR ? -1 : w->first;
+    return low == NEAR ? -1 : (int32_t)w->first;
 }
 
 /* Appends a triangle of which the map has this, unless it is surely not seen. */
@@ -367,21 +355,23 @@ static EW_OWN_FRAME void sort(ew_picture_work *w)
 
 /* ---- drawing ---- */
 
+static ew_mesh *mesh_at_hand(const ew_picture_work *w) { return (ew_mesh *)(void *)w->slots; }
+
 /* The next object of a picture that is drawn at once, where nothing has to be sorted: its mesh is ready
- * in geometry->scene.mesh. Returns 0 behind the last and after an error. */
+ * behind the bands. Returns 0 behind the last and after an error. */
 static EW_OWN_FRAME int next_mesh(ew_picture_work *w, int *error)
 {
     if (w->object == w->count) return 0;
     const ew_object *object = &w->objects[w->object++];
-    ew_mesh *mesh = &w->geometry->scene.mesh;
+    ew_mesh *mesh = mesh_at_hand(w);
     *error = ew_raster_set_material(w->geometry->raster, &object->material);
     if (*error) return 0;
     w->geometry->transform = object->transform;
     *mesh = object->mesh;
     if (!mesh->screen) {
-        ew_screen_vertex *screen = (ew_screen_vertex *)(void *)w->slots;
+        ew_screen_vertex *screen = (ew_screen_vertex *)(void *)((uint8_t *)w->slots + aligned(sizeof *mesh));
         ew_transform_vertices(&object->transform, mesh->vertices, object->vertex_count, screen);
-        w->counts->transformed += object->vertex_count;
+        w->transformed += object->vertex_count;
         mesh->screen = screen;
     }
     return 1;
@@ -423,12 +413,13 @@ static EW_OWN_FRAME int start_band(ew_picture_work *w)
     const ew_picture *p = w->picture;
     const int32_t row = p->first_row + (int32_t)(w->band * w->rows), end = end_of_bands(w, row, 1);
     if (begins(w, w->band)) start_colours(w, row);
-    w->top = row > w->first ? row : w->first;
-    w->bottom = end < w->end ? end : w->end;
-    if (w->top >= w->bottom) return 0;
+    const int32_t top = row > w->first ? row : w->first, bottom = end < w->end ? end : w->end;
+    w->top = (uint16_t)top;
+    w->bottom = (uint16_t)bottom;
+    if (top >= bottom) return 0;
     /* ew_raster_set_rows has chosen all rows */
-    if (w->is_narrow || w->top > row || w->bottom < end || w->bands_at_once > 1) {
-        set_scissor(w, p->scissor.x0, w->top, p->scissor.x1, w->bottom);
+    if (w->is_narrow || top > row || bottom < end || w->bands_at_once > 1) {
+        set_scissor(w, p->scissor.x0, top, p->scissor.x1, bottom);
     }
     return 1;
 }
@@ -466,11 +457,13 @@ static EW_OWN_FRAME int prepare(const ew_picture *picture, const ew_object *obje
     if (!plan_init(&plan, picture, objects, count)) return EW_ERR_ARGUMENT;
     if (!EW_WITH_SPANS && picture->visibility == EW_DEPTH_SPANS) return EW_ERR_UNSUPPORTED;
     if (bytes < plan.least) return EW_ERR_ROOM;
-    ew_picture_work *w = work_init(&plan, picture, memory, bytes);
+    ew_picture_work *w = &geometry->work.picture;
+    work_init(w, &plan, picture, memory, bytes);
     w->objects = objects;
     w->count = count;
     w->geometry = geometry;
-    w->object = w->band = 0;
+    w->object = 0;
+    w->band = 0;
     w->used = UINT32_MAX;
     w->first = picture->scissor.y0 > picture->first_row ? picture->scissor.y0 : picture->first_row;
     w->end = picture->scissor.y1 < picture->end_row ? picture->scissor.y1 : picture->end_row;
@@ -496,7 +489,7 @@ static inline int draw(ew_picture_work *w)
         if (start_band(w)) {
             if (EW_WITH_SPANS && w->row) error = ew_draw_visible(w);
             else if (w->is_listed) error = ew_draw_band(w);
-            else while (error >= 0 && next_mesh(w, &error)) error = (int)ew_draw_triangles(w->geometry, &w->geometry->scene.mesh);
+            else while (error >= 0 && next_mesh(w, &error)) error = (int)ew_draw_triangles(w->geometry, mesh_at_hand(w));
         }
         if (error >= 0) hand_over(w);
     }
@@ -508,10 +501,11 @@ int ew_picture_draw(const ew_picture *picture, const ew_object *objects, uint32_
 {
     const int error = prepare(picture, objects, count, geometry, memory, bytes);
     if (error) return error;
-    ew_picture_work *w = work_in(memory);
+    ew_picture_work *w = &geometry->work.picture;
+    const int result = draw(w);
     if (counts) {
-        *counts = w->own_counts; /* zeros */
-        w->counts = counts;
+        const ew_picture_counts all = { w->set_up, w->again, w->transformed, w->most_active, w->crossings, w->sections };
+        *counts = all;
     }
-    return draw(w);
+    return result;
 }

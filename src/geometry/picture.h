@@ -18,9 +18,6 @@ enum { EW_NUMBER_BITS = 20 };
 #define EW_NO_TRIANGLE EW_NUMBER_MASK
 #define EW_NO_VERTEX UINT32_MAX
 
-/* A place among the kept ones, or none: ew_active_list. */
-typedef uint16_t ew_place;
-
 /* What stands in a place: a kept triangle, or a gap with the next one behind it. */
 typedef union ew_kept {
     ew_active active;
@@ -35,8 +32,6 @@ typedef struct ew_slot {
     ew_screen_vertex vertex;
     uint32_t number;
 } ew_slot;
-
-enum { EW_FEW = 8 };
 
 /* ---- visible.c: EW_DEPTH_SPANS ---- */
 
@@ -63,46 +58,6 @@ typedef struct ew_row_work {
     uint16_t unused, unused_count, count;
     ew_seen seen[];   /* `count` of them                                                   */
 } ew_row_work;
-
-typedef struct ew_picture_work {
-    const ew_picture *picture;
-    const ew_object *objects;
-    uint32_t count;
-    ew_geometry *geometry;
-    ew_picture_counts *counts, own_counts;
-    uint32_t rows, bands, stride; /* of a band, EW_DEPTH_SPANS: 1                            */
-    uint32_t bands_at_once; /* that are handed over together                                */
-    uint8_t is_listed;    /* whether triangles are sorted into bands                         */
-    uint8_t is_narrow;    /* whether the scissor has not all of the columns                  */
-    uint32_t band;        /* the one at hand                                                */
-    int32_t first, end;   /* rows that triangles are drawn in                               */
-    int32_t top, bottom;  /* rows of the band at hand among them                            */
-    /* Memory. */
-    uint8_t *colour;
-    uint16_t *depth;
-    uint32_t colour_bytes; /* of one band                                                    */
-    uint16_t *map;        /* one for each vertex: its row, then the slot that may have it   */
-    uint32_t vertices;
-    uint32_t *entries;
-    uint8_t *rest, *end_of_memory; /* what lies behind all of this                            */
-    ew_row_work *row;     /* NULL but for EW_DEPTH_SPANS                                     */
-    ew_slot *slots;
-    uint32_t slot_count, hand; /* hand: where a slot was taken last                         */
-    /* Lists. Late ones stand in the entries' place once these were taken: those of earlier bands
-     * first, then, from late_begun on, those that the band at hand has added. */
-    uint32_t entry_count, next;
-    uint32_t late_count, late_next, late_left; /* of earlier bands: read up to, left so far      */
-    uint32_t late_begun, late_new;
-    ew_place kept, gaps;
-    ew_active_list list;  /* its link leads to the one that a band has come to              */
-    uint32_t active;      /* how many are kept or late                                      */
-    /* The object at hand, by number, and the one whose material the raster has. */
-    uint32_t object, first_triangle, first_vertex, used;
-    const ew_object *at;
-    uint32_t behind;      /* the first triangle that is not the object's                    */
-    uint32_t number;      /* the triangle at hand, its corners in `screen`                  */
-    ew_screen_vertex screen[EW_FEW];
-} ew_picture_work;
 
 /* The first row whose centre is at or below y: where a triangle may begin. */
 static inline int32_t ew_row_of_snapped(ew_snapped y)

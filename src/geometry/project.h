@@ -76,12 +76,23 @@ static inline void ew_corner_from(ew_raster_vertex *out, const ew_vertex16 *vert
     out->v = vertex->v * uv_unit;
 }
 
-/* Clips a triangle of a mesh of g->transform; g->clip_screen are its vertices after the transform,
- * and have to stay. What is left is a fan of triangles. */
-void ew_clip_triangle(ew_geometry *g, const ew_mesh *mesh, const uint16_t index[3]);
+/* Whether a vertex with this outcode has no place on the screen. */
+static inline int ew_is_placeless(int outcode) { return (outcode & (EW_OUT_NEAR | EW_OUT_GUARD)) != 0; }
 
-/* Leaves the next triangle of the fan in g->corner and returns 1, or 0 behind the last. With
- * g->clipped_next set to 0 it begins anew. */
-int ew_clip_next(ew_geometry *g);
+/* Which of three have none, a bit each. */
+static inline unsigned ew_placeless(int a, int b, int c)
+{
+    return (unsigned)ew_is_placeless(a) | (unsigned)ew_is_placeless(b) << 1 | (unsigned)ew_is_placeless(c) << 2;
+}
+
+/* Clips a triangle of a mesh of `transform`: the first three corners at hand, as ew_corner_from leaves them. Bit k of
+ * `placeless`: corner k has no place on the screen. What is left is a fan of triangles around corner 0, of
+ * g->corner_count corners, with which those at hand are replaced. The raster must not have begun a triangle. */
+void ew_clip_triangle(ew_geometry *g, const ew_transform *transform, const ew_mesh *mesh, const uint16_t index[3],
+                      unsigned placeless);
+
+/* The third corner of the next triangle of the fan, the second stands before it; or NULL behind the last. With
+ * g->corner_next set to 2 it begins anew. */
+const ew_raster_vertex *ew_clip_next(ew_geometry *g);
 
 #endif

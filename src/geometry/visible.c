@@ -70,7 +70,7 @@ static void nearer_part(ew_picture_work *w, const ew_active_span *other, int32_t
 {
     const ew_active_span *now = &w->row->now.span;
     const int first = nearer(now, other, *from), last = *to - *from > 1 ? nearer(now, other, *to - 1) : first;
-    w->counts->crossings += first * last < 0;
+    w->crossings += first * last < 0;
     if (first > 0 && last > 0) return;
     if (first <= 0 && last <= 0) *to = *from;
     else if (first > 0) *to = find_crossing(now, other, *from, *to - 1);
@@ -220,7 +220,7 @@ static EW_OWN_FRAME void start_section(ew_picture_work *w, uint16_t from)
 static EW_OWN_FRAME int next_section(ew_picture_work *w)
 {
     if (w->row->to == end_of_row(w)) return 0;
-    w->counts->sections++;
+    w->sections++;
     start_section(w, w->row->to);
     return 1;
 }

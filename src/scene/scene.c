@@ -446,7 +446,7 @@ int ew_scene_pose(const ew_scene *scene, uint32_t time_ms, ew_mat34 *world)
 /* ---- drawing ----
  *
  * Below ew_scene_draw lies the deepest chain of calls there is, so it holds what it can in
- * geometry->scene. */
+ * geometry->work.scene. */
 
 static EW_OWN_FRAME int set_projection(ew_projection *projection, const ew_scene_camera *camera,
                                        const ew_viewport *viewport)
@@ -475,7 +475,7 @@ static EW_OWN_FRAME int use_material(const ew_scene *scene, uint32_t number, ew_
 /* A primitive's transform, by way of the node's and the view in work. */
 static int primitive_transform(const uint8_t *p, ew_scene_work *work, ew_transform *transform)
 {
-    ew_mat34 *const model_view = &work->model_view;
+    ew_mat34 *const model_view = &work->primitive_at_hand.model_view;
     dequantise_at(p, model_view);
     int error = ew_mat34_mul(model_view, &work->node_view, model_view);
     return error ? error : ew_transform_set(transform, &work->projection, model_view, &work->viewport);
@@ -495,13 +495,14 @@ static void primitive_mesh(const ew_scene *scene, const uint8_t *p, ew_mesh *mes
 static EW_OWN_FRAME int prepare_primitive(const ew_scene *scene, uint32_t number, ew_geometry *geometry)
 {
     const uint8_t *p = record(scene, EW_SECTION_PRIM, number);
-    int error = primitive_transform(p, &geometry->scene, &geometry->transform);
+    ew_scene_work *const work = &geometry->work.scene;
+    int error = primitive_transform(p, work, &geometry->transform);
     if (!error) error = use_material(scene, u16_at(p + 6), geometry->raster);
     if (error) return error;
-    ew_mesh *const mesh = &geometry->scene.mesh;
+    ew_mesh *const mesh = &work->primitive_at_hand.mesh;
     primitive_mesh(scene, p, mesh);
-    mesh->screen = geometry->scene.vertices;
-    ew_transform_vertices(&geometry->transform, mesh->vertices, u16_at(p + 4), geometry->scene.vertices);
+    mesh->screen = work->vertices;
+    ew_transform_vertices(&geometry->transform, mesh->vertices, u16_at(p + 4), work->vertices);
     return EW_OK;
 }
 
@@ -528,7 +529,7 @@ static EW_OWN_FRAME int make_object(const ew_scene *scene, uint32_t number, ew_s
 int ew_scene_objects(const ew_scene *scene, const ew_scene_camera *camera, const ew_mat34 *world,
                      const ew_viewport *viewport, ew_geometry *geometry, ew_object *objects)
 {
-    ew_scene_work *work = &geometry->scene;
+    ew_scene_work *work = &geometry->work.scene;
     int error = set_projection(&work->projection, camera, viewport);
     work->viewport = *viewport;
     for (uint32_t i = 0; i < scene->section[EW_SECTION_NODE].count && !error; i++) {
@@ -544,10 +545,10 @@ int ew_scene_objects(const ew_scene *scene, const ew_scene_camera *camera, const
 int32_t ew_scene_draw(const ew_scene *scene, const ew_scene_camera *camera, const ew_mat34 *world,
                       const ew_viewport *viewport, ew_geometry *geometry, ew_screen_vertex *scratch)
 {
-    int error = set_projection(&geometry->scene.projection, camera, viewport);
-    if (error) return error;
     /* what is needed after a primitive is drawn lies here, too: less on the stack below it */
-    ew_scene_work *work = &geometry->scene;
+    ew_scene_work *work = &geometry->work.scene;
+    int error = set_projection(&work->projection, camera, viewport);
+    if (error) return error;
     work->viewport = *viewport;
     work->vertices = scratch;
     work->view = &camera->view;
@@ -562,7 +563,7 @@ int32_t ew_scene_draw(const ew_scene *scene, const ew_scene_camera *camera, cons
         for (; work->left; work->left--) {
             error = prepare_primitive(scene, work->primitive++, geometry);
             if (error) return error;
-            int32_t result = ew_draw_triangles(geometry, &work->mesh);
+            int32_t result = ew_draw_triangles(geometry, &work->primitive_at_hand.mesh);
             if (result < 0) return result;
             work->drawn += result;
         }
