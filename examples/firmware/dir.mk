@@ -83,6 +83,6 @@ firmware-images: $(FIRMWARE_IMAGES)
 firmware-test: firmware  ## run them on emulated boards: pictures and hashes equal the host's
 	@$(MAKE) --no-print-directory firmware-test-tools
 	@EW_BIN=$(BIN) EW_FIRMWARE=$(F) EW_COUNT=$(C)/count.so $(RUN) host_tests/firmware/test_firmware.py
-firmware-test-tools: $(C)/count.so $(BIN)/ew-render $(F)/crate.ewb $(F)/courtyard.ewb
+firmware-test-tools: $(C)/count.so $(C)/list $(BIN)/ew-render $(F)/crate.ewb $(F)/courtyard.ewb
 	@:
 .PHONY: firmware firmware-images firmware-test-tools firmware-test

@@ -189,6 +189,11 @@ class Work(unittest.TestCase):
 
 
 class Modes(unittest.TestCase):
+    def test_goals(self):
+        m = count.Memory(0, 0, active=3, set_up=3, again=0, transformed=8, triangles=2, vertices=4)
+        self.assertEqual([count.goal_bytes(mode, m, 28) for mode in ("bands-8", "line", "bands-4")],
+                         [12 * 1024 + 16 * 4 + 4 * 28, 4 * 1024 + 112 * 3 + 4 * 2 + 2 * 4, "na"])
+
     def test_series_of_a_target(self):
         rows = [dict(zip(count.MEMORY_COLUMNS, [target, scene, mode, 1, ram, "na", 0, 2000000, "1", cycles]))
                 for target, scene, mode, ram, cycles in (("m3", "A", "at-once", 4096, 3000000), ("m3", "A", "line", 1024, 5000000),

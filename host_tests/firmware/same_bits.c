@@ -30,6 +30,21 @@ void print_failure(const char *scene, const char *what)
     board_print("\n");
 }
 
+void print_memory(const char *scene, const char *mode, uint32_t bytes, uint32_t active, const ew_picture_counts *counts,
+                  uint32_t triangles, uint32_t vertices)
+{
+    const uint32_t figures[] = { bytes, active, counts->set_up, counts->again, counts->transformed, triangles, vertices };
+    board_print("memory ");
+    board_print(scene);
+    board_print(" ");
+    board_print(mode);
+    for (unsigned i = 0; i < sizeof figures / sizeof *figures; i++) {
+        board_print(" ");
+        board_print_decimal(figures[i]);
+    }
+    board_print("\n");
+}
+
 /* Marsaglia's xorshift with shifts 13, 17 and 5. */
 uint32_t random32(generator *g)
 {

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "edgewalk/raster.h"
+#include "edgewalk/picture.h"
 
 /* What a target has room for:
  *   0  fixed-point functions, the set of triangles and the HUD (AVR: 8 KB of RAM, 16-bit int)
@@ -36,6 +36,8 @@ extern ew_raster same_raster; /* one context for all: small boards have no room 
  * not apply. */
 void print_hash(const char *scene, const char *method, int tolerance, const char *size, uint32_t hash);
 void print_failure(const char *scene, const char *what);
+void print_memory(const char *scene, const char *mode, uint32_t bytes, uint32_t active, const ew_picture_counts *counts,
+                  uint32_t triangles, uint32_t vertices);
 
 void fixed_bits(void);
 void triangle_bits(void);

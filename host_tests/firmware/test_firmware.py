@@ -11,7 +11,7 @@ import tempfile
 import unittest
 
 import board
-from board import MACHINES, ROOT
+from board import MACHINES, ROOT, count
 
 sys.path.insert(0, os.path.join(ROOT, "host_tests", "cli"))
 from png import png_pixels  # noqa: E402 - found by the line above
@@ -73,14 +73,18 @@ LIMITS = stated()
 
 
 def same_bits(test, target):
-    """Case to hash, of same_bits on a target."""
-    found = {}
+    """Of same_bits on a target: case to hash, and (scene, mode) to a picture's memory."""
+    found, memory = {}, {}
     for line in run(test, "same_bits", target):
         kind, *case, value = line.split()
+        if kind == "memory":
+            scene, mode, size, *rest = *case, value
+            memory[scene, mode] = count.Memory(int(size), 0, *map(int, rest))
+            continue
         test.assertEqual(kind, "hash", line)
         test.assertNotIn(tuple(case), found)
         found[tuple(case)] = value
-    return found
+    return found, memory
 
 
 def expected_cases(target, reference):
@@ -99,7 +103,7 @@ class SameBits(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        cls.reference = same_bits(cls("test_the_cases_differ"), REFERENCE)
+        cls.reference, _ = same_bits(cls("test_the_cases_differ"), REFERENCE)
 
     def test_the_cases_differ(self):
         """A picture that was not drawn would have its neighbour's hash."""
@@ -111,11 +115,26 @@ class SameBits(unittest.TestCase):
         self.assertEqual(len(drawn), 3)
 
     def hold(self, target):
-        found = same_bits(self, target)
+        found, memory = same_bits(self, target)
         for case, value in found.items():
             hashes[(target, *case)] = value
         self.assertEqual(set(found), expected_cases(target, self.reference))
         self.assertEqual({c: v for c, v in found.items() if self.reference[c] != v}, {})
+        if target in FULL and not target.startswith("host"):
+            self.hold_memory(memory)
+
+    def hold_memory(self, memory):
+        """320 x 240, RGB565, textured, with depth: what a picture takes beside the scene, with each triangle set up once."""
+        references = count.list_references(os.path.dirname(board.COUNT))
+        self.assertEqual({case for case in memory if case[1] in ("bands-8", "line")},
+                         {(scene, mode) for scene in "ABCDE" for mode in ("bands-8", "line")})
+        for (scene, mode), m in memory.items():
+            with self.subTest(scene=scene, mode=mode):
+                goal = count.goal_bytes(mode, m, references[scene])
+                if goal != "na":
+                    self.assertLessEqual(m.bytes, goal)
+                self.assertEqual(m.again, 0)
+                self.assertLessEqual(m.transformed, 2 * m.vertices)
 
 
 class Hash(unittest.TestCase):

@@ -48,7 +48,8 @@ typedef struct ew_picture {
     ew_uq1_31 fog_near, fog_far; /* as in ew_raster_set_fog; both 0: none                     */
     uint16_t fog_colour;
     /* Called for each finished band, from the top: its memory, first_row and height; may draw
-     * into it, also with the geometry's raster, whose scissor it need not put back, but its material.
+     * into it, also with the geometry's raster, whose scissor it need not put back, but its material; the
+     * geometry itself is in use.
      * With one buffer the band has to be sent before it returns; with two, the band before this one has. */
     void (*band)(void *user, const ew_target *band);
     void *user;
@@ -73,12 +74,12 @@ typedef struct ew_picture_counts {
 size_t ew_picture_least(const ew_picture *picture, const ew_object *objects, uint32_t count);
 
 /* What it takes for `active` triangles that reach from one band into the next to be set up once:
- * the least, 408 bytes, and 112 for each, which is enough where most of them are neither wide nor
- * shaded (docs/memory-modes.md); 256 for each with EW_DEPTH_SPANS. */
+ * the least, 112 bytes for each, or 256 with EW_DEPTH_SPANS, and 408 or, of three at most, 124 more for
+ * each. Three may be wide, but not shaded; of more it is enough where most are neither (docs/memory-modes.md). */
 size_t ew_picture_bytes(const ew_picture *picture, const ew_object *objects, uint32_t count, uint32_t active);
 
 /* Draws objects in order, as ew_draw_triangles would after ew_raster_clear, with geometry->raster,
- * which is initialised first. All of the memory is used; it needs no alignment and holds nothing
+ * which is initialised first; geometry->transform may be lost. All of the memory is used; it needs no alignment and holds nothing
  * afterwards, but for the last band. `counts` may be NULL.
  * Returns EW_OK, EW_ERR_ROOM for less than ew_picture_least, EW_ERR_ARGUMENT, EW_ERR_UNSUPPORTED (also for
  * EW_DEPTH_SPANS with a material that blends, leaves texels out or goes without a part of the depth test)

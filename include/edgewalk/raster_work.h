@@ -322,7 +322,7 @@ typedef struct ew_clip_vertex {
 
 enum {
     EW_CLIP_MAX = 8, /* corners of a triangle cut by five planes                            */
-    EW_CLIP_AHEAD = 2 /* so many corners what is read lies ahead of what is written: clip_by */
+    EW_CLIP_AHEAD = 2 /* what is read lies so many corners ahead of what is written */
 };
 
 /* ---- all of it ---- */

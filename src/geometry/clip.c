@@ -72,17 +72,16 @@ static EW_OWN_FRAME void cut(ew_clip_vertex *out, const ew_clip_vertex *inner, i
     out->corner = -1;
 }
 
-/* Sutherland and Hodgman's step: the polygon cut by one plane, in place. Each plane adds one corner at most, and
- * where corners go in a line along the plane, give or take a unit, two: so many is what is read ahead of what
- * is written. */
-static EW_OWN_FRAME int clip_by(ew_clip_vertex *polygon, int count, int plane, int64_t near_w)
+/* Sutherland and Hodgman's step: the polygon of `count` corners at `a`, with room for one more, cut by one plane. What is
+ * left stands from EW_CLIP_AHEAD corners before `a` on. Each plane adds one corner at most, and where corners go in a
+ * line along the plane, give or take a unit, two: so what is read is not yet written over. */
+static EW_OWN_FRAME int clip_by(ew_clip_vertex *a, int count, int plane, int64_t near_w)
 {
-    const ew_clip_vertex *a = polygon + EW_CLIP_AHEAD, *const end = a + count;
-    for (int i = count; i-- > 0;) polygon[i + EW_CLIP_AHEAD] = polygon[i];
-    polygon[count + EW_CLIP_AHEAD] = polygon[0];
+    ew_clip_vertex *const polygon = a - EW_CLIP_AHEAD, *const end = a + count;
     int made = 0;
+    *end = *a;
     for (int64_t da = distance(a, plane, near_w), db; a < end && made < EW_CLIP_MAX; a++, da = db) {
-        const ew_clip_vertex *b = a + 1;
+        const ew_clip_vertex *const b = a + 1;
         db = distance(b, plane, near_w);
         const int is_in = da >= 0, crosses = is_in != (db >= 0);
         if (is_in) polygon[made++] = *a;
@@ -133,7 +132,8 @@ static EW_OWN_FRAME void polygon_from(ew_clip_vertex polygon[3], ew_raster_verte
         polygon[i].colour[0] = (uint16_t)(v->colour.r * 256u);
         polygon[i].colour[1] = (uint16_t)(v->colour.g * 256u);
         polygon[i].colour[2] = (uint16_t)(v->colour.b * 256u);
-        corner[PLACES + i] = *v;
+        ew_raster_vertex *const kept = &corner[PLACES + i];
+        kept->x = v->x, kept->y = v->y, kept->w = v->w;
     }
 }
 
@@ -161,13 +161,15 @@ static EW_OWN_FRAME void place(ew_raster_vertex *out, const ew_clip_vertex *p, c
     out->colour.b = (uint8_t)((p->colour[2] + 128u) >> 8);
 }
 
-/* Returns how many corners are left. */
+/* Of a triangle EW_CLIP_AHEAD corners further on. Returns how many corners are left. */
 static EW_OWN_FRAME int clip(ew_clip_vertex *polygon, int64_t near_w)
 {
-    int count = clip_by(polygon, 3, PLANE_NEAR, near_w);
+    ew_clip_vertex *const ahead = polygon + EW_CLIP_AHEAD;
+    int count = clip_by(ahead, 3, PLANE_NEAR, near_w);
     for (int plane = PLANE_LEFT; plane < PLANE_COUNT && count >= 3; plane++) {
         if (plane == PLANE_LEFT && !leaves_guard(polygon, count)) break;
-        count = clip_by(polygon, count, plane, near_w);
+        for (int i = count; i-- > 0;) ahead[i] = polygon[i];
+        count = clip_by(ahead, count, plane, near_w);
     }
     return count;
 }
@@ -179,7 +181,7 @@ EW_OWN_FRAME void ew_clip_triangle(ew_geometry *g, const ew_transform *transform
     ew_raster_vertex *const corner = g->at_hand.corner;
     clip_unit unit;
     choose_unit(&unit, transform);
-    polygon_from(polygon, corner, &unit, transform, mesh, index, placeless);
+    polygon_from(polygon + EW_CLIP_AHEAD, corner, &unit, transform, mesh, index, placeless);
     const int count = clip(polygon, unit.near_w);
     for (int i = 0; i < count; i++) place(&corner[i], &polygon[i], &corner[PLACES], transform, unit.near_w);
     g->corner_count = (uint8_t)count;

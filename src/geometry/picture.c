@@ -74,15 +74,16 @@ size_t ew_picture_least(const ew_picture *picture, const ew_object *objects, uin
 
 size_t ew_picture_bytes(const ew_picture *picture, const ew_object *objects, uint32_t count, uint32_t active)
 {
-    enum { AND = 408 };
+    enum { AND = 408, AND_EACH = 124 };
+    const uint32_t more = active <= AND / AND_EACH ? AND_EACH * active : AND;
     const uint32_t of_active = picture->visibility == EW_DEPTH_SPANS ? 256 : 112;
     memory_plan plan;
     if (!plan_init(&plan, picture, objects, count)) return 0;
     if (!plan.is_listed) return (size_t)plan.least;
     const uint32_t most = SIZE_MAX < INT32_MAX ? (uint32_t)SIZE_MAX : INT32_MAX;
-    if (plan.least > most - AND) return (size_t)plan.least;
-    const uint32_t fit = (most - AND - plan.least) / of_active;
-    const uint32_t bytes = plan.least + AND + (active < fit ? active : fit) * of_active; /* <= most */
+    if (plan.least > most - more) return (size_t)plan.least;
+    const uint32_t fit = (most - more - plan.least) / of_active;
+    const uint32_t bytes = plan.least + more + (active < fit ? active : fit) * of_active; /* <= most */
     return (size_t)bytes;
 }
 

@@ -3,8 +3,8 @@
  * automatic choice by that, at each tolerance; then of scenes A and D with each fill. The same file is firmware and host program; both
  * print the hash of every picture, which is the same on all targets.
  *
- * On the host: `bench --list` names the cases and says how many fragments each scene has, when
- * it is built with EW_TRACE = 1. */
+ * On the host, built with EW_TRACE = 1: `bench --list` names the cases and says how many fragments each scene has,
+ * `bench --references` how often its triangles would stand in the lists of bands. */
 #include "cases.h"
 #include "edgewalk/geometry.h"
 #include "edgewalk/picture.h"
@@ -57,11 +57,16 @@ static int make_objects(const ew_material *method)
     return error;
 }
 
+static int make_all(const bench_scene *s, const ew_material *material)
+{
+    if (s->file) return make_objects(material);
+    make_object(s, material);
+    return EW_OK;
+}
+
 static int32_t draw_mode(const bench_scene *s, const ew_material *material)
 {
-    int error = EW_OK;
-    if (s->file) error = make_objects(material);
-    else make_object(s, material);
+    const int error = make_all(s, material);
     return error ? error : ew_picture_draw(&picture, objects, object_count, &geometry, mode_memory, mode_bytes, &counts);
 }
 
@@ -179,11 +184,11 @@ static void print_memory(void)
     bench_line("\n");
 }
 
-/* With room for as many triangles as are active at a time. */
-static int run_mode(const bench_scene *s, const bench_mode *m)
+static const ew_texture mode_texture = { .texels = bench_texture, .width = 256, .height = 256 };
+static const ew_material mode_material = { .texture = &mode_texture, .tolerance = BENCH_MODE_TOLERANCE, .rung = EW_RUNG_AUTO };
+
+static int start_mode(const bench_scene *s, const bench_mode *m)
 {
-    const ew_texture texture = { .texels = bench_texture, .width = 256, .height = 256 };
-    const ew_material material = { .texture = &texture, .tolerance = BENCH_MODE_TOLERANCE, .rung = EW_RUNG_AUTO };
     const ew_picture p = { .width = W, .height = H, .rows = m->rows, .visibility = m->visibility, .buffers = 1, .end_row = H,
                            .background = BACKGROUND, .scissor = { 0, 0, W, H }, .band = hash_band };
     picture = p;
@@ -191,14 +196,21 @@ static int run_mode(const bench_scene *s, const bench_mode *m)
     ew_geometry_init(&geometry, &raster);
     int error = s->file ? ew_scene_open(&scene, s->file, s->file_bytes) : EW_OK;
     if (!error && s->file && ew_scene_object_count(&scene) > MOST_OBJECTS) error = EW_ERR_RANGE;
+    return error;
+}
+
+/* With room for as many triangles as are active at a time. */
+static int run_mode(const bench_scene *s, const bench_mode *m)
+{
+    int error = start_mode(s, m);
     mode_bytes = sizeof mode_memory;
-    if (!error) error = draw_mode(s, &material);
+    if (!error) error = draw_mode(s, &mode_material);
     const uint32_t active = counts.most_active;
     mode_bytes = ew_picture_bytes(&picture, objects, object_count, active);
     band_hash = DRAWN_START;
-    if (!error) error = draw_mode(s, &material);
+    if (!error) error = draw_mode(s, &mode_material);
     picture.band = no_band;
-    if (!error) error = bench_draw(s, &material);
+    if (!error) error = bench_draw(s, &mode_material);
     bench_end();
     mode = NULL;
     counts.most_active = active;
@@ -302,12 +314,63 @@ static int list(void)
     }
     return 0;
 }
+
+/* What memory goals go by. */
+enum { LISTED_ROWS = 8 };
+
+/* Whether anything of an object is set up in a band. Returns -1 where it cannot be drawn. */
+static int is_in_band(const ew_object *object, uint16_t first_row)
+{
+    enum { BYTES = 1 << 15 }; /* all of the memory is used */
+    ew_picture band = picture;
+    band.first_row = first_row;
+    band.end_row = (uint16_t)(first_row + LISTED_ROWS);
+    band.rows = LISTED_ROWS / 2; /* in a single band set-ups are not counted */
+    band.band = no_band;
+    if (ew_picture_draw(&band, object, 1, &geometry, mode_memory, BYTES, &counts)) return -1;
+    return counts.set_up > 0;
+}
+
+/* How often an object's triangles would stand in lists of bands, one list for each band. Returns -1 where one of them
+ * cannot be drawn. */
+static int32_t references_of(const ew_object *object)
+{
+    const uint16_t *const indices = object->mesh.indices;
+    ew_object one = *object;
+    int32_t references = 0;
+    one.mesh.index_count = 3;
+    for (uint32_t i = 0; i < object->mesh.index_count; i += 3) {
+        one.mesh.indices = indices + i;
+        for (uint16_t row = 0; row < H; row = (uint16_t)(row + LISTED_ROWS)) {
+            const int is_in = is_in_band(&one, row);
+            if (is_in < 0) return -1;
+            references += is_in;
+        }
+    }
+    return references;
+}
+
+static int list_references(void)
+{
+    for (int s = 0; s < bench_scene_count; s++) {
+        int32_t references = start_mode(&bench_scenes[s], &bench_modes[0]);
+        if (!references) references = make_all(&bench_scenes[s], &mode_material);
+        for (uint32_t i = 0; i < object_count && references >= 0; i++) {
+            const int32_t of_object = references_of(&objects[i]);
+            references = of_object < 0 ? of_object : references + of_object;
+        }
+        if (references < 0) return 1;
+        printf("%s,%ld\n", bench_scenes[s].name, (long)references);
+    }
+    return 0;
+}
 #endif
 
 int main(int argc, char **argv)
 {
 #if EW_TRACE
     if (argc == 2 && strcmp(argv[1], "--list") == 0) return list();
+    if (argc == 2 && strcmp(argv[1], "--references") == 0) return list_references();
 #endif
     if (argc > 1) fprintf(stderr, "usage: %s\n", argv[0]);
     return argc > 1 ? 2 : run_all();

@@ -56,6 +56,12 @@ def list_cases(build):
     return [Case(scene, method, tolerance, int(n)) for scene, method, tolerance, n in (line.split(",") for line in lines)]
 
 
+def list_references(build):
+    """{scene: in how many bands of 8 rows there is something of a triangle, over all triangles}"""
+    lines = run([os.path.join(build, "list"), "--references"]).splitlines()
+    return {scene: int(n) for scene, n in (line.split(",") for line in lines)}
+
+
 def printed(text):
     """(hash, Memory or None) of each picture that an image prints."""
     lines = re.findall(r"^([0-9a-f]{8})\n(?:memory((?: \d+)+)\n)?", text, re.M)
@@ -160,26 +166,24 @@ MEMORY_COLUMNS = ["target", "scene", "mode", "rows", "ram_bytes", "goal_bytes", 
                   "cycles_typical", "active", "set_up", "set_up_again", "transformed", "triangles", "vertices", "notes"]
 
 
-def goal_bytes(mode, m):
+def goal_bytes(mode, m, references):
     """What a 320 x 240 picture in RGB565 with depth may take beside the scene."""
     if mode == "line":
         return 4096 + 112 * m.active + 4 * m.triangles + 2 * m.vertices
-    return 12288 + 16 * m.vertices if mode == "bands-8" else "na"
+    return 12288 + 16 * m.vertices + 4 * references if mode == "bands-8" else "na"
 
 
-def memory_rows(cases, counts):
-    """RAM against instructions of every picture in bands; counts: {target: [Count]}."""
+def memory_rows(cases, counts, references):
+    """RAM against instructions of every picture in bands; counts: {target: [Count]}, references: of list_references."""
     rows = []
     for target, of_target in counts.items():
         at_once = {case.scene: c.instructions for case, c in zip(cases_of(target, cases), of_target) if case.method == "at-once"}
         for case, c in zip(cases_of(target, cases), of_target):
             if case.method not in MODES:
                 continue
-            m, goal, notes = c.memory, goal_bytes(case.method, c.memory), []
+            m, goal, notes = c.memory, goal_bytes(case.method, c.memory, references[case.scene]), []
             if goal == "na":
                 notes.append("goal: none for this mode")
-            elif case.method == "bands-8":
-                notes.append("goal: without the 4 bytes for each triangle-band reference")
             if not c.cycles:
                 notes.append("cycles: no timing table for the host's processor")
             rows.append([target, case.scene, case.method, MODES[case.method], m.bytes, goal, m.objects_bytes, c.instructions,
@@ -238,7 +242,7 @@ def main():
                 for case, c in zip(cases_of(target, cases), of_target):
                     out.writerow([target, *case, c.instructions, *(c.cycles or ["na"] * 3)])
     if args.memory:
-        write_memory(args.memory, memory_rows(cases, counts))
+        write_memory(args.memory, memory_rows(cases, counts, list_references(args.build)))
     print_table(cases, counts)
 
 

@@ -49,7 +49,7 @@ def judge(build, bits, scenes):
 
 def measure(args, progress):
     """Rows of speed_accuracy for every size of the table, {size: what was judged}, rows of memory for the first, rows of work."""
-    cases, rows, judged, modes = count.list_cases(args.build), [], {}, []
+    cases, references, rows, judged, modes = count.list_cases(args.build), count.list_references(args.build), [], {}, []
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         names, jobs = {}, {}
         for bits in args.bits:
@@ -70,7 +70,7 @@ def measure(args, progress):
             counts = {target: jobs[bits, target].result() for target in args.targets}
             judged[bits] = jobs[bits, "judged"].result()
             rows += tables.speed_accuracy(bits, judged[bits], cases, counts)
-            modes = modes or count.memory_rows(cases, counts)
+            modes = modes or count.memory_rows(cases, counts, references)
     worked = work.rows_of(args.build, {target: jobs["work", target].result() for target in work.targets_of(args.targets)})
     return rows, judged, modes, worked
 
