@@ -100,8 +100,9 @@ static inline int ew_product_less_long(int32_t a, int32_t b, int32_t c, int32_t 
 }
 static inline int ew_product_less_pieces(int32_t a, int32_t b, int32_t c, int32_t d)
 {
-    const int32_t half = INT32_C(0x8000);
-    uint32_t all = (uint32_t)(a + half) | (uint32_t)(b + half) | (uint32_t)(c + half) | (uint32_t)(d + half);
+    /* bits 31 to 15 the same: from 2^16 on, two neighbours that differ leave a one */
+    uint32_t all = ((uint32_t)a ^ (uint32_t)a << 1) | ((uint32_t)b ^ (uint32_t)b << 1);
+    all |= ((uint32_t)c ^ (uint32_t)c << 1) | ((uint32_t)d ^ (uint32_t)d << 1);
     if (all >> 16 == 0) return a * b < c * d; /* |.| <= 2^30 */
     return ew_product_less_long(a, b, c, d);
 }
