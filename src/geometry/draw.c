@@ -2,15 +2,16 @@
 #include "picture.h"
 #include "project.h"
 
-/* The triangle at hand is that of three vertices on the screen. Without colours in the mesh, the
- * corners keep those that they have: white. */
-static EW_OWN_FRAME void take_corners(ew_geometry *geometry, const ew_mesh *mesh, const uint16_t index[3])
+/* The triangle at hand is that of three vertices on the screen. Without `colours` the corners keep those that they
+ * have. */
+static EW_OWN_FRAME void take_corners(ew_geometry *geometry, const ew_mesh *mesh, const uint16_t index[3],
+                                      const ew_colour888 *colours)
 {
-    ew_raster_vertex *const v = geometry->corner;
+    ew_raster_vertex *v = geometry->corner;
     const int32_t uv_unit = (int32_t)1 << (12 - mesh->uv_fraction_bits);
-    for (int k = 0; k < 3; k++) {
-        ew_corner_from(&v[k], &mesh->vertices[index[k]], &mesh->screen[index[k]], uv_unit);
-        if (mesh->colours) v[k].colour = mesh->colours[index[k]];
+    for (const uint16_t *const end = index + 3; index < end; index++, v++) {
+        ew_corner_from(v, &mesh->vertices[*index], &mesh->screen[*index], uv_unit);
+        if (colours) v->colour = colours[*index];
     }
 }
 
@@ -61,6 +62,7 @@ int32_t ew_draw_triangles(ew_geometry *geometry, const ew_mesh *mesh)
     const ew_screen_vertex *const screen = mesh->screen;
     const int both_sides = geometry->raster->material.flags & EW_DOUBLE_SIDED;
     const int64_t least = least_area(&geometry->transform, both_sides);
+    const ew_colour888 *const colours = geometry->raster->material.flags & EW_SHADED ? mesh->colours : NULL;
     for (int k = 0; k < 3; k++) geometry->corner[k].colour = ew_white;
 
     ew_raster_vertex *const v = geometry->corner;
@@ -76,7 +78,7 @@ int32_t ew_draw_triangles(ew_geometry *geometry, const ew_mesh *mesh)
             ew_clip_triangle(geometry, mesh, index);
             result = draw_clipped(geometry);
         } else {
-            take_corners(geometry, mesh, index);
+            take_corners(geometry, mesh, index, colours);
             result = ew_raster_triangle_in_range(geometry->raster, &v[0], &v[1], &v[2]);
         }
         if (result < 0) return result;
