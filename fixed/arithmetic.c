@@ -10,21 +10,21 @@ static int32_t saturate32(int64_t a)
 
 EW_HOT uint64_t ew_mul_u32_pieces(uint32_t a, uint32_t b)
 {
-    uint32_t ah = a >> 16, al = a & 0xFFFFu, bh = b >> 16, bl = b & 0xFFFFu;
+    uint32_t ah = a >> 16, al = ew_low16(a), bh = b >> 16, bl = ew_low16(b);
     uint32_t low = al * bl, middle = ah * bl + (low >> 16); /* <= (2^16 - 1)^2 + 2^16 - 1 */
-    uint32_t other = al * bh + (middle & 0xFFFFu);          /* likewise                    */
-    return (uint64_t)(ah * bh + (middle >> 16) + (other >> 16)) << 32 | (other << 16 | (low & 0xFFFFu));
+    uint32_t other = al * bh + ew_low16(middle);            /* likewise                    */
+    return (uint64_t)(ah * bh + (middle >> 16) + (other >> 16)) << 32 | (other << 16 | ew_low16(low));
 }
 
 int64_t ew_mul_s32_pieces(int32_t a, int32_t b)
 {
     /* the upper halves keep the sign, as in ew_mulh_s32_pieces */
-    int32_t ah = EW_ASR(a, 16), al = a & 0xFFFF, bh = EW_ASR(b, 16), bl = b & 0xFFFF;
+    int32_t ah = EW_ASR(a, 16), al = (int32_t)ew_low16((uint32_t)a), bh = EW_ASR(b, 16), bl = (int32_t)ew_low16((uint32_t)b);
     uint32_t low = (uint32_t)al * (uint32_t)bl;
     int32_t middle = ah * bl + (int32_t)(low >> 16);
-    int32_t other = al * bh + (middle & 0xFFFF);
+    int32_t other = al * bh + (int32_t)ew_low16((uint32_t)middle);
     uint32_t high = (uint32_t)(ah * bh + EW_ASR(middle, 16) + EW_ASR(other, 16));
-    return (int64_t)((uint64_t)high << 32 | ((uint32_t)other << 16 | (low & 0xFFFFu)));
+    return (int64_t)((uint64_t)high << 32 | ((uint32_t)other << 16 | ew_low16(low)));
 }
 
 ew_q16_16 ew_q16_16_mul(ew_q16_16 a, ew_q16_16 b)

@@ -47,11 +47,25 @@ static void newton_error_over_all_mantissas(void **state)
     hold(ew_recip_newton, newton_bits[EW_RECIP_BITS - 4]);
 }
 
+#if EW_RECIP_BITS >= 7
+static void newton_steps_give_the_same_bits(void **state)
+{
+    (void)state;
+    for (uint64_t i = UINT64_C(1) << 31; i < UINT64_C(1) << 32; i += STRIDE) {
+        const uint32_t m = (uint32_t)i, r = ew_recip_table_inline(m);
+        if (ew_newton_long(m, r) != ew_newton_pieces(m, r)) fail_msg("m = 0x%08X", m);
+    }
+}
+#endif
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         TEST(table_error_over_all_mantissas),
         TEST(newton_error_over_all_mantissas),
+#if EW_RECIP_BITS >= 7
+        TEST(newton_steps_give_the_same_bits),
+#endif
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -46,25 +46,34 @@ static inline uint64_t ew_wrap_mul64(uint64_t a, int32_t b) { return a * (uint64
  * 64 x 64 bits; all give the same bits. */
 uint64_t ew_mul_u32_pieces(uint32_t a, uint32_t b);
 int64_t ew_mul_s32_pieces(int32_t a, int32_t b);
+/* a mod 2^16. A compiler that sees through it shifts twice on ARMv6-M. */
+static inline uint32_t ew_low16(uint32_t a)
+{
+    uint16_t low = (uint16_t)a;
+#if defined(__GNUC__)
+    __asm__("" : "+r"(low));
+#endif
+    return low;
+}
 static inline uint32_t ew_mulh_u32_pieces(uint32_t a, uint32_t b)
 {
-    uint32_t ah = a >> 16, al = a & 0xFFFFu, bh = b >> 16, bl = b & 0xFFFFu;
+    uint32_t ah = a >> 16, al = ew_low16(a), bh = b >> 16, bl = ew_low16(b);
     uint32_t middle = ah * bl + ((al * bl) >> 16);   /* <= (2^16 - 1)^2 + 2^16 - 1 */
-    uint32_t other = al * bh + (middle & 0xFFFFu);   /* likewise                    */
+    uint32_t other = al * bh + ew_low16(middle);     /* likewise                    */
     return ah * bh + (middle >> 16) + (other >> 16);
 }
 static inline uint64_t ew_mul_u32_u16_pieces(uint32_t a, uint32_t b)
 {
-    const uint32_t low = (a & 0xFFFFu) * b, high = (a >> 16) * b + (low >> 16); /* <= (2^16 - 1)^2 + 2^16 - 1 */
-    return (uint64_t)(high >> 16) << 32 | (high << 16 | (low & 0xFFFFu));
+    const uint32_t low = ew_low16(a) * b, high = (a >> 16) * b + (low >> 16); /* <= (2^16 - 1)^2 + 2^16 - 1 */
+    return (uint64_t)(high >> 16) << 32 | (high << 16 | ew_low16(low));
 }
 static inline int32_t ew_mulh_s32_pieces(int32_t a, int32_t b)
 {
     /* the upper halves keep the sign: no correction is needed afterwards */
-    int32_t ah = EW_ASR(a, 16), al = a & 0xFFFF, bh = EW_ASR(b, 16), bl = b & 0xFFFF;
+    int32_t ah = EW_ASR(a, 16), al = (int32_t)ew_low16((uint32_t)a), bh = EW_ASR(b, 16), bl = (int32_t)ew_low16((uint32_t)b);
     int32_t low = (int32_t)(((uint32_t)al * (uint32_t)bl) >> 16);
-    int32_t middle = ah * bl + low;                /* -2^15 (2^16 - 1) to 2^15 (2^16 - 1) */
-    int32_t other = al * bh + (middle & 0xFFFF);   /* likewise                            */
+    int32_t middle = ah * bl + low;                              /* -2^15 (2^16 - 1) to 2^15 (2^16 - 1) */
+    int32_t other = al * bh + (int32_t)ew_low16((uint32_t)middle); /* likewise                            */
     return ah * bh + EW_ASR(middle, 16) + EW_ASR(other, 16);
 }
 #if !EW_LONG_MULTIPLY
@@ -91,8 +100,9 @@ static inline int ew_product_less_long(int32_t a, int32_t b, int32_t c, int32_t 
 }
 static inline int ew_product_less_pieces(int32_t a, int32_t b, int32_t c, int32_t d)
 {
-    const int32_t half = INT32_C(0x8000);
-    uint32_t all = (uint32_t)(a + half) | (uint32_t)(b + half) | (uint32_t)(c + half) | (uint32_t)(d + half);
+    /* bits 31 to 15 the same: from 2^16 on, two neighbours that differ leave a one */
+    uint32_t all = ((uint32_t)a ^ (uint32_t)a << 1) | ((uint32_t)b ^ (uint32_t)b << 1);
+    all |= ((uint32_t)c ^ (uint32_t)c << 1) | ((uint32_t)d ^ (uint32_t)d << 1);
     if (all >> 16 == 0) return a * b < c * d; /* |.| <= 2^30 */
     return ew_product_less_long(a, b, c, d);
 }
@@ -202,13 +212,27 @@ static inline uint32_t ew_recip_table_inline(uint32_t m)
     /* Table units are 2^14 of the result; (2^16 + a) 2^14 < 2^31. */
     return ((UINT32_C(65536) + a) << 14) - (fall >> 2);
 }
+/* A Newton step: m r = 2^62 (1 + d) with |d| < 2^-11, and the better reciprocal is r (1 - d), off by d^2.
+ * The second form, of 16-bit pieces with the same bits, needs |d| < 2^-16: a table of 7 bits. */
+static inline uint32_t ew_newton_long(uint32_t m, uint32_t r)
+{
+    uint32_t t = ew_mulh_u32(m, r); /* 2^30 (1 + d); r (2^31 - t) / 2^30 with twice each factor in 32 bits */
+    return ew_mulh_u32(r << 1, 0u - (t << 1));
+}
+static inline uint32_t ew_newton_pieces(uint32_t m, uint32_t r)
+{
+    uint32_t mh = m >> 16, ml = ew_low16(m), rh = r >> 16, rl = ew_low16(r);
+    uint32_t middle = ((ml * rl) >> 16) + mh * rl + ml * rh; /* may wrap, as what it is worth mod 2^16 does */
+    int32_t s = (int16_t)ew_low16(mh * rh + (middle >> 16)); /* t - 2^30 */
+    return r + (uint32_t)EW_ASR(EW_ASR((int32_t)rl * -s, 16) - (int32_t)rh * s, 14); /* |.| < 2^30 */
+}
 static inline uint32_t ew_recip_newton_inline(uint32_t m)
 {
-    uint32_t r = ew_recip_table_inline(m);
-    /* m r = 2^62 (1 + d) with |d| < 2^-11, so t = 2^30 (1 + d), and the better reciprocal
-     * is r (1 - d) = r (2^31 - t) / 2^30, off by d^2. Twice each factor fits 32 bits. */
-    uint32_t t = ew_mulh_u32(m, r);
-    return ew_mulh_u32(r << 1, 0u - (t << 1));
+#if EW_LONG_MULTIPLY || EW_RECIP_BITS < 7
+    return ew_newton_long(m, ew_recip_table_inline(m));
+#else
+    return ew_newton_pieces(m, ew_recip_table_inline(m));
+#endif
 }
 
 /* ---- vectors ---- */

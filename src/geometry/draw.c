@@ -1,25 +1,64 @@
 /* Triangles from indices: what cannot be seen is left out before anything is set up. */
 #include "project.h"
 
-/* The triangle at hand is that of three vertices on the screen. Without colours in the mesh, the
- * corners keep those that they have: white. */
-static EW_OWN_FRAME void take_corners(ew_geometry *geometry, const ew_mesh *mesh, const uint16_t index[3])
+/* The triangle at hand is that of three vertices on the screen. Without `colours` the corners keep those that they
+ * have. */
+static EW_OWN_FRAME void take_corners(ew_geometry *geometry, const ew_mesh *mesh, const uint16_t index[3],
+                                      const ew_colour888 *colours)
 {
-    ew_raster_vertex *const v = geometry->at_hand.corner;
+    ew_raster_vertex *v = geometry->at_hand.corner;
     const int32_t uv_unit = (int32_t)1 << (12 - mesh->uv_fraction_bits);
-    for (int k = 0; k < 3; k++) {
-        ew_corner_from(&v[k], &mesh->vertices[index[k]], &mesh->screen[index[k]], uv_unit);
-        if (mesh->colours) v[k].colour = mesh->colours[index[k]];
+    for (const uint16_t *const end = index + 3; index < end; index++, v++) {
+        ew_corner_from(v, &mesh->vertices[*index], &mesh->screen[*index], uv_unit);
+        if (colours) v->colour = colours[*index];
     }
 }
 
 void ew_geometry_init(ew_geometry *geometry, ew_raster *raster) { geometry->raster = raster; }
 
+static int is_double_sided(const ew_geometry *geometry) { return geometry->raster->material.flags & EW_DOUBLE_SIDED; }
+
+/* What is_away begins its sum with. */
+static int64_t least_area(const ew_geometry *geometry)
+{
+    const ew_transform *const t = &geometry->transform;
+    const int32_t h = (int32_t)1 << (11 - EW_SUBPIXEL_BITS);
+    if (is_double_sided(geometry)) return INT64_MIN / 2;
+    return EW_LONG_MULTIPLY ? ((int64_t)t->across + t->down) * (-2 * h) - 8 * h * h : 0;
+}
+
+/* Whether a triangle inside the viewport is surely none that the raster would draw. Where 64 bits cost little, the corners
+ * need not be snapped for that: snapping moves a corner by h at most, half a subpixel, and with it the doubled area by h
+ * times the sum of the edges' extents in x and y, which is at most twice the viewport's, and by 8 h^2. */
+static inline int is_away(const ew_screen_vertex *a, const ew_screen_vertex *b, const ew_screen_vertex *c, int64_t area)
+{
+#if EW_LONG_MULTIPLY
+    area += ew_mul_s32(b->x - a->x, c->y - a->y); /* |d| <= 2^25 */
+    area += ew_mul_s32(a->x - c->x, b->y - a->y);
+    return area >= 0;
+#else
+    return area == 0 && !ew_faces_the_eye(a, b, c);
+#endif
+}
+
+/* Whether a triangle lies beyond one border of the viewport. Apart: few registers are left where it is asked for. */
+static EW_OWN_FRAME int is_outside(const ew_screen_vertex *a, const ew_screen_vertex *b, const ew_screen_vertex *c)
+{
+    return a->outcode & b->outcode & c->outcode & ~EW_OUT_GUARD;
+}
+
+/* The triangle at hand: its first corner, and those up to `last`. */
+static EW_OWN_FRAME int draw_corners(ew_geometry *geometry, const ew_raster_vertex *last)
+{
+    return ew_raster_triangle_in_range(geometry->raster, &geometry->at_hand.corner[0], last - 1, last);
+}
+
 int32_t ew_draw_triangles(ew_geometry *geometry, const ew_mesh *mesh)
 {
     EW_ASSERT(mesh->index_count % 3 == 0 && mesh->uv_fraction_bits <= 12);
     const ew_screen_vertex *const screen = mesh->screen;
-    const int one_sided = !(geometry->raster->material.flags & EW_DOUBLE_SIDED);
+    const int64_t least = least_area(geometry);
+    const ew_colour888 *const colours = geometry->raster->material.flags & EW_SHADED ? mesh->colours : NULL;
     ew_raster_vertex *const v = geometry->at_hand.corner;
     for (int k = 0; k < 3; k++) v[k].colour = ew_white;
 
@@ -28,24 +67,21 @@ int32_t ew_draw_triangles(ew_geometry *geometry, const ew_mesh *mesh)
     for (; index < end; index += 3) {
         const ew_screen_vertex *a = &screen[index[0]], *b = &screen[index[1]], *c = &screen[index[2]];
         const int any = a->outcode | b->outcode | c->outcode;
-        int result;
-        if (ew_is_placeless(any)) {
-            if (a->outcode & b->outcode & c->outcode & ~EW_OUT_GUARD) continue;
-            take_corners(geometry, mesh, index);
+        if (any ? is_outside(a, b, c) : is_away(a, b, c, least)) continue;
+        const int is_clipped = ew_is_placeless(any);
+        const ew_raster_vertex *last = &v[2];
+        take_corners(geometry, mesh, index, colours);
+        if (is_clipped) {
             ew_clip_triangle(geometry, &geometry->transform, mesh, index, ew_placeless(a->outcode, b->outcode, c->outcode));
-            result = 0;
-            for (const ew_raster_vertex *at; result >= 0 && (at = ew_clip_next(geometry));) {
-                const int reached = ew_raster_triangle_in_range(geometry->raster, &v[0], at - 1, at);
-                result = reached < 0 ? reached : result | reached;
-            }
-        } else {
-            if (any && (a->outcode & b->outcode & c->outcode)) continue;
-            if (one_sided && !ew_faces_the_eye(a, b, c)) continue;
-            take_corners(geometry, mesh, index);
-            result = ew_raster_triangle_in_range(geometry->raster, &v[0], &v[1], &v[2]);
+            last = ew_clip_next(geometry);
         }
-        if (result < 0) return result;
-        drawn += result;
+        int reached = 0;
+        for (; last; last = is_clipped ? ew_clip_next(geometry) : NULL) {
+            const int result = draw_corners(geometry, last);
+            if (result < 0) return result;
+            reached |= result;
+        }
+        drawn += reached;
     }
     return drawn;
 }

@@ -253,8 +253,9 @@ static inline int project_quickly(ew_screen_vertex *out, const ew_transform *t, 
     /* 1/w = r 2^(up - 60). A position in units of 2^-12 px is
      * x 2^exponent 2^12 / w = (x 2^up) r 2^(exponent - 48), and shift = 15 - exponent: the
      * product's upper half, 2^(shift + 1) times too large. */
-    int up = ew_clz32((uint32_t)w) - 2;
-    uint32_t r = ew_recip_newton_inline((uint32_t)w << 2 << up);
+    const uint32_t wide_w = (uint32_t)w << 2; /* 2^22 <= w < 2^30 */
+    const int up = ew_clz32(wide_w);
+    uint32_t r = ew_recip_newton_inline(wide_w << up);
     int32_t wide_x = (int32_t)((uint32_t)x << up), wide_y = (int32_t)((uint32_t)y << up);
     if (EW_ASR(wide_x, up) != x || EW_ASR(wide_y, up) != y) return 0;
     x = EW_ASR(EW_ASR(ew_mulh_s32(wide_x, (int32_t)r), t->shift_x) + 1, 1);
@@ -269,7 +270,7 @@ static inline int project_quickly(ew_screen_vertex *out, const ew_transform *t, 
     return 1;
 }
 
-static void project_carefully(ew_screen_vertex *out, const ew_transform *t, const ew_vertex16 *in, int32_t w)
+static EW_OWN_FRAME void project_carefully(ew_screen_vertex *out, const ew_transform *t, const ew_vertex16 *in, int32_t w)
 {
     if (w < t->w_hidden) {
         hide(out);
