@@ -39,7 +39,7 @@ static void around_the_eye(int close)
 {
     const ew_viewport viewport = { 0, 0, W, H };
     const ew_projection projection = { 65536, FOCAL_Y, { 1 << 29, close ? -11 : -1 } };
-    const ew_material material = { .rung = EW_RUNG_CONSTANT, .flags = EW_DOUBLE_SIDED };
+    const ew_material material = { .rung = EW_RUNG_CONSTANT, .flags = EW_DOUBLE_SIDED | EW_SHADED };
     ew_mat34 model_view;
     for (int i = 0; i < 3; i++) {
         ew_row_from_q16_16(&model_view.row[i], i == 0 ? 131072 : 0, i == 1 ? 131072 : 0, i == 2 ? 131072 : 0, 0);

@@ -1,5 +1,4 @@
 /* Triangles from indices: what cannot be seen is left out before anything is set up. */
-#include "picture.h"
 #include "project.h"
 
 /* The triangle at hand is that of three vertices on the screen. Without `colours` the corners keep those that they
@@ -17,11 +16,14 @@ static EW_OWN_FRAME void take_corners(ew_geometry *geometry, const ew_mesh *mesh
 
 void ew_geometry_init(ew_geometry *geometry, ew_raster *raster) { geometry->raster = raster; }
 
+static int is_double_sided(const ew_geometry *geometry) { return geometry->raster->material.flags & EW_DOUBLE_SIDED; }
+
 /* What is_away begins its sum with. */
-static int64_t least_area(const ew_transform *t, int both_sides)
+static int64_t least_area(const ew_geometry *geometry)
 {
+    const ew_transform *const t = &geometry->transform;
     const int32_t h = (int32_t)1 << (11 - EW_SUBPIXEL_BITS);
-    if (both_sides) return INT64_MIN / 2;
+    if (is_double_sided(geometry)) return INT64_MIN / 2;
     return EW_LONG_MULTIPLY ? ((int64_t)t->across + t->down) * (-2 * h) - 8 * h * h : 0;
 }
 
@@ -39,50 +41,48 @@ static inline int is_away(const ew_screen_vertex *a, const ew_screen_vertex *b, 
 #endif
 }
 
-/* The same of one that reaches over the viewport's border. */
-static EW_OWN_FRAME int is_hidden(const ew_screen_vertex *a, const ew_screen_vertex *b, const ew_screen_vertex *c, int both_sides)
+/* Whether a triangle lies beyond one border of the viewport. Apart: few registers are left where it is asked for. */
+static EW_OWN_FRAME int is_outside(const ew_screen_vertex *a, const ew_screen_vertex *b, const ew_screen_vertex *c)
 {
-    return ew_is_hidden(a, b, c, both_sides);
+    return a->outcode & b->outcode & c->outcode & ~EW_OUT_GUARD;
 }
 
-static EW_OWN_FRAME int draw_clipped(ew_geometry *geometry)
+/* The triangle at hand. */
+static EW_OWN_FRAME int draw_corners(ew_geometry *geometry)
 {
     const ew_raster_vertex *const v = geometry->corner;
-    int result = 0;
-    while (result >= 0 && ew_clip_next(geometry)) {
-        const int reached = ew_raster_triangle_in_range(geometry->raster, &v[0], &v[1], &v[2]);
-        result = reached < 0 ? reached : result | reached;
-    }
-    return result;
+    return ew_raster_triangle_in_range(geometry->raster, &v[0], &v[1], &v[2]);
 }
 
 int32_t ew_draw_triangles(ew_geometry *geometry, const ew_mesh *mesh)
 {
     EW_ASSERT(mesh->index_count % 3 == 0 && mesh->uv_fraction_bits <= 12);
     const ew_screen_vertex *const screen = mesh->screen;
-    const int both_sides = geometry->raster->material.flags & EW_DOUBLE_SIDED;
-    const int64_t least = least_area(&geometry->transform, both_sides);
+    const int64_t least = least_area(geometry);
     const ew_colour888 *const colours = geometry->raster->material.flags & EW_SHADED ? mesh->colours : NULL;
     for (int k = 0; k < 3; k++) geometry->corner[k].colour = ew_white;
 
-    ew_raster_vertex *const v = geometry->corner;
     int32_t drawn = 0;
     const uint16_t *index = mesh->indices, *const end = index + mesh->index_count;
     for (; index < end; index += 3) {
         const ew_screen_vertex *a = &screen[index[0]], *b = &screen[index[1]], *c = &screen[index[2]];
         const int any = a->outcode | b->outcode | c->outcode;
-        int result;
-        if (any ? is_hidden(a, b, c, both_sides) : is_away(a, b, c, least)) continue;
-        if (any & (EW_OUT_NEAR | EW_OUT_GUARD)) {
+        if (any ? is_outside(a, b, c) : is_away(a, b, c, least)) continue;
+        const int is_clipped = any & (EW_OUT_NEAR | EW_OUT_GUARD);
+        if (is_clipped) {
             geometry->clip_screen[0] = a, geometry->clip_screen[1] = b, geometry->clip_screen[2] = c;
             ew_clip_triangle(geometry, mesh, index);
-            result = draw_clipped(geometry);
+            if (!ew_clip_next(geometry)) continue;
         } else {
             take_corners(geometry, mesh, index, colours);
-            result = ew_raster_triangle_in_range(geometry->raster, &v[0], &v[1], &v[2]);
         }
-        if (result < 0) return result;
-        drawn += result;
+        int reached = 0;
+        do {
+            const int result = draw_corners(geometry);
+            if (result < 0) return result;
+            reached |= result;
+        } while (is_clipped && ew_clip_next(geometry));
+        drawn += reached;
     }
     return drawn;
 }
