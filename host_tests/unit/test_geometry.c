@@ -546,6 +546,53 @@ static void the_near_plane_is_decided_in_64_bits(void **state)
     assert_true(hidden > 10000 && seen > 10000);
 }
 
+/* What is left out before the corners are snapped draws nothing: slivers along lines of pixel centres, which rounding
+ * turns over. */
+static void what_is_turned_away_draws_nothing(void **state)
+{
+    (void)state;
+    static const int8_t direction[4][2] = { { 1, 0 }, { 0, 1 }, { 1, 1 }, { 1, -1 } };
+    const ew_viewport viewport = { 0, 0, W, H };
+    const ew_projection projection = { 65536, 65536, { 1 << 29, -3 } };
+    const ew_material material = { .colour = 1, .rung = EW_RUNG_CONSTANT };
+    const uint16_t index[3] = { 0, 1, 2 };
+    const ew_vertex16 v[3] = { { 0 }, { 0 }, { 0 } };
+    ew_mat34 model_view;
+    long drawn = 0, turned = 0;
+    ew_mat34_identity(&model_view);
+    assert_int_equal(ew_raster_init(&raster, &target), EW_OK);
+    ew_raster_set_material(&raster, &material);
+    ew_geometry_init(&geometry, &raster);
+    assert_int_equal(ew_transform_set(&geometry.transform, &projection, &model_view, &viewport), EW_OK);
+    for (int n = 0; n < 200000; n++) {
+        const int8_t *d = direction[test_random() % 4];
+        const int32_t x = 4096 * (int32_t)(test_random() % (W / 3)) + 2048, y = 4096 * (int32_t)(H / 2) + 2048;
+        const int32_t along[3] = { 0, 4096 * (int32_t)(1 + test_random() % (H / 2 - 2)), (int32_t)(test_random() % (4096 * (H / 2 - 2))) };
+        ew_screen_vertex screen[3];
+        ew_raster_vertex corner[3] = { { 0 } };
+        const int first = (int)(test_random() % 3);
+        for (int i = 0; i < 3; i++) {
+            const int at = (i + first) % 3;
+            screen[at] = (ew_screen_vertex){ .x = x + d[0] * along[i], .y = y + d[1] * along[i], .w = UINT32_C(1) << 30 };
+            screen[at].x += (int32_t)(test_random() % 24) - 12;
+            screen[at].y += (int32_t)(test_random() % 24) - 12;
+            corner[at].x = screen[at].x, corner[at].y = screen[at].y, corner[at].w = screen[at].w;
+        }
+        const ew_mesh mesh = { v, screen, NULL, index, 3, 0 };
+        ew_raster_clear(&raster, 0);
+        const int expected = ew_raster_triangle(&raster, &corner[0], &corner[1], &corner[2]);
+        ew_raster_clear(&raster, 0);
+        test_context("case %d: %d %d, %d %d, %d %d", n, corner[0].x, corner[0].y, corner[1].x, corner[1].y, corner[2].x, corner[2].y);
+        assert_int_equal(ew_draw_triangles(&geometry, &mesh), expected);
+        const int64_t area = (int64_t)(corner[1].x - corner[0].x) * (corner[2].y - corner[0].y) -
+                             (int64_t)(corner[2].x - corner[0].x) * (corner[1].y - corner[0].y);
+        drawn += expected;
+        turned += expected && area > 0;
+    }
+    test_context("%ld slivers reached a pixel, %ld of them away from the eye before snapping", drawn, turned);
+    assert_true(drawn > 10000 && turned > 1000);
+}
+
 static void arguments_are_checked(void **state)
 {
     (void)state;
@@ -583,6 +630,7 @@ int main(void)
         TEST(guard_band_drops_nothing),
         TEST(units_of_every_size),
         TEST(the_near_plane_is_decided_in_64_bits),
+        TEST(what_is_turned_away_draws_nothing),
         TEST(arguments_are_checked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -253,7 +253,7 @@ static inline int project_quickly(ew_screen_vertex *out, const ew_transform *t, 
     /* 1/w = r 2^(up - 60). A position in units of 2^-12 px is
      * x 2^exponent 2^12 / w = (x 2^up) r 2^(exponent - 48), and shift = 15 - exponent: the
      * product's upper half, 2^(shift + 1) times too large. */
-    const uint32_t wide_w = (uint32_t)w << 2; /* 2^22 <= w < 2^30 */
+    const uint32_t wide_w = (uint32_t)w << 2; /* 2^20 <= w < 2^30 */
     const int up = ew_clz32(wide_w);
     uint32_t r = ew_recip_newton_inline(wide_w << up);
     int32_t wide_x = (int32_t)((uint32_t)x << up), wide_y = (int32_t)((uint32_t)y << up);
