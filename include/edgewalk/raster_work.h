@@ -213,7 +213,7 @@ typedef struct ew_packing {
     uint8_t is_256;        /* the texture is 256 x 256                                     */
 } ew_packing;
 
-/* What the machine code of arch.h reads while it draws rows or runs; it knows the order. */
+/* What the machine code of arch.h reads while it draws rows of packed planes, or runs; it knows the order. */
 typedef struct ew_rows {
     const uint16_t *texels; /* to `end`: as in ew_packing                                  */
     uint32_t turn, mask;
@@ -229,12 +229,10 @@ typedef struct ew_rows {
     uint32_t apart;        /* from a pixel's depth to its colour, bytes                    */
     int32_t left;          /* rows                                                         */
     uint32_t reached;      /* not 0: some pixel was                                        */
-    /* for tangents only: */
-    uint32_t w;            /* the row's first pixel's 1/z, uq1.31                          */
+    /* for runs, of which `reached` is the last one's length: */
     const uint16_t *recip; /* the table                                                    */
     uint32_t u_shift, v_shift, u_base, v_base; /* as in ew_triangle                        */
     uint32_t low, log2_height; /* as in ew_packing                                         */
-    int32_t sure;          /* px: longer spans are not drawn here                          */
     uint32_t is_256;
     int32_t shortest;      /* px: shorter runs are not drawn here, but for a piece's last  */
 } ew_rows;

@@ -72,7 +72,7 @@ EW_ALWAYS_INLINE int ew_zeros_of(uint32_t w) { return ew_clz32(w | 1u); }
     (defined(__thumb2__) || !defined(__clang__))
 #define EW_HAS_PIXEL_LOOP 1
 typedef char ew_rows_order[offsetof(ew_rows, edge) == 28 && offsetof(ew_rows, depth) == 56 && offsetof(ew_rows, reached) == 72 &&
-                           offsetof(ew_rows, u_shift) == 84 && offsetof(ew_rows, shortest) == 116 && offsetof(ew_linear, dv) == 20 &&
+                           offsetof(ew_rows, u_shift) == 80 && offsetof(ew_rows, shortest) == 108 && offsetof(ew_linear, dv) == 20 &&
                            offsetof(ew_span_work, fill.textured.rows) == 124 && offsetof(ew_span_work, limit) == 76 &&
                            offsetof(ew_span_work, left) == 92 && offsetof(ew_span_work, fill.textured.pen) == 104 &&
                            offsetof(ew_edge, dy) == 16 && sizeof(ew_edge) == 20 && sizeof(ew_plane32) == 12 ? 1 : -1];
@@ -217,7 +217,7 @@ EW_ALWAYS_INLINE void ew_walk_rows(ew_rows *rows, int is_256)
     "clz r2, r1\n\t" \
     "lsls r1, r1, r2\n\t" \
     "ubfx r12, r1, %[to_index], %[index_bits]\n\t" \
-    "ldr lr, [r0, #80]\n\t"                        /* recip                        */ \
+    "ldr lr, [r0, #76]\n\t"                        /* recip                        */ \
     "add r12, lr, r12, lsl #1\n\t" \
     "ubfx r1, r1, %[to_fraction], #16\n\t" \
     "ldrh lr, [r12]\n\t" \
@@ -228,7 +228,7 @@ EW_ALWAYS_INLINE void ew_walk_rows(ew_rows *rows, int is_256)
     "lsrs r1, r1, #2\n\t" \
     "rsb r1, r1, lr, lsl #14\n\t" \
     EW_TANGENT_OF("r4", "r9") EW_TANGENT_OF("r10", "r11") \
-    "add r1, r0, #84\n\t" \
+    "add r1, r0, #80\n\t" \
     "ldm r1, {r1, r2, r3, r5, r12, lr}\n\t"        /* shifts, bases, low, log2_height */ \
     "lsls r4, r4, r1\n\t" \
     "adds r4, r4, r3\n\t" \
@@ -259,7 +259,7 @@ EW_ALWAYS_INLINE void ew_walk_rows(ew_rows *rows, int is_256)
 /* r1 is 1/z, r2 its step, r5 as `apart` less the step of z */
 #define EW_RUN_PIXELS \
     "ldr r12, [r0]\n\t"                            /* texels                       */ \
-    "ldr r3, [r0, #112]\n\t"                       /* is_256                       */ \
+    "ldr r3, [r0, #104]\n\t"                       /* is_256                       */ \
     "cmp r3, #0\n\tbeq 16f\n\t" \
     EW_PIXELS("uxth %[t], %[high], ror #24\n\t") \
     "\n\tb 17f\n" \
@@ -269,7 +269,7 @@ EW_ALWAYS_INLINE void ew_walk_rows(ew_rows *rows, int is_256)
     "\n\tpop {r0}\n" \
     "17:"
 #define EW_RUN_OPERANDS \
-    [w] "=&r"(w), [dw] "=&r"(dw), [t] "=&r"(t), [high] "=&r"(high), [apart] "=&r"(apart), [z] "=&r"(z), [n] "=&r"(n), \
+    [w] "=&r"(w), [dw] "=&r"(dw), [t] "=&r"(t), [high] "=&r"(high), [apart] "=&r"(apart), [z] "=&r"(z), [n] "+r"(n), \
         [dhigh] "=&r"(dhigh), [low] "=&r"(low), [dlow] "=&r"(dlow), [texels] "=&r"(texels), [turn] "=&r"(turn)
 #define EW_RUN_REGISTERS \
     register uint32_t w __asm__("r1"), dw __asm__("r2"), t __asm__("r3"), high __asm__("r4"), apart __asm__("r5"); \
@@ -278,75 +278,7 @@ EW_ALWAYS_INLINE void ew_walk_rows(ew_rows *rows, int is_256)
 #define EW_RECIP_OPERANDS \
     [to_index] "i"(31 - EW_RECIP_BITS), [index_bits] "i"(EW_RECIP_BITS), [to_fraction] "i"(15 - EW_RECIP_BITS)
 
-/* Rows of one run each, until rows->left is 0 or a row is longer than rows->sure, which is left to the caller: 115
- * instructions a row besides its pixels where GCC needs 190. */
 #define EW_HAS_TANGENT_LOOP 1
-EW_ALWAYS_INLINE void ew_walk_tangents(ew_rows *rows)
-{
-    register ew_rows *s __asm__("r0") = rows;
-    register uint32_t n __asm__("r8");
-    EW_RUN_REGISTERS;
-    __asm__ volatile("15:\tadd r1, r0, #28\n\t"
-                     "ldm r1, {r1, r2, r3, r4, r5}\n\t"             /* edge, planes, x0, x1, column */
-                     "ldr r6, [r1]\n\t"                             /* x, from the left edge        */
-                     "ldr r8, [r1, #20]\n\t"                        /* n, from the right one        */
-                     "cmp r6, r3\n\tit lt\n\tmovlt r6, r3\n\t"
-                     "cmp r8, r4\n\tit gt\n\tmovgt r8, r4\n\t"
-                     "ldr r4, [r0, #108]\n\t"                       /* sure                         */
-                     "subs r8, r8, r6\n\t"
-                     "ble 18f\n\t"
-                     "cmp r8, r4\n\t"
-                     "bgt 19f\n\t"
-                     "subs r5, r6, r5\n\t"                          /* columns                      */
-                     "ldrd r3, r4, [r0, #56]\n\t"                   /* depth, stride                */
-                     "add r6, r3, r6, lsl #1\n\t"                   /* z                            */
-                     "adds r3, r3, r4\n\t"
-                     "str r3, [r0, #56]\n\t"
-                     "ldmia r2!, {r1, r3, r12}\n\t"                 /* of 1/z: row, dx, dy          */
-                     "add r12, r12, r1\n\t"
-                     "str r12, [r2, #-12]\n\t"
-                     "mla r1, r3, r5, r1\n\t"
-                     "ldmia r2!, {r4, r9, r12}\n\t"                 /* u */
-                     "add r12, r12, r4\n\t"
-                     "str r12, [r2, #-12]\n\t"
-                     "mla r4, r9, r5, r4\n\t"
-                     "ldm r2, {r10, r11, r12}\n\t"                  /* v */
-                     "add r12, r12, r10\n\t"
-                     "str r12, [r2]\n\t"
-                     "mla r10, r11, r5, r10\n\t"
-                     "ldr r2, [r0, #48]\n\t"                        /* lead                         */
-                     "lsr r2, r1, r2\n\t"
-                     "lsls r2, r2, #1\n\t"
-                     "str r2, [r0, #76]\n\t"                        /* w                            */
-                     EW_TANGENT
-                     "ldr r1, [r0, #76]\n\t"
-                     "ldr r2, [r0, #52]\n\t"                        /* dw                           */
-                     "ldr r5, [r0, #64]\n\t"                        /* apart                        */
-                     "str r8, [r0, #72]\n\t"                        /* reached                      */
-                     "subs r5, r5, #2\n\t"
-                     EW_RUN_PIXELS
-                     "\n14:\tldr r1, [r0, #28]\n\t" EW_EDGES_STEP
-                     "ldr r2, [r0, #68]\n\t"                        /* left                         */
-                     "subs r2, r2, #1\n\t"
-                     "str r2, [r0, #68]\n\t"
-                     "bne 15b\n\t"
-                     "b 19f\n"
-                     "18:\tldm r2, {r1, r3, r4, r5, r6, r8, r9, r10, r11}\n\t" /* no pixel: planes and rows only */
-                     "adds r1, r1, r4\n\t"
-                     "add r5, r5, r8\n\t"
-                     "add r9, r9, r11\n\t"
-                     "str r1, [r2]\n\t"
-                     "str r5, [r2, #12]\n\t"
-                     "str r9, [r2, #24]\n\t"
-                     "ldrd r1, r3, [r0, #56]\n\t"
-                     "adds r1, r1, r3\n\t"
-                     "str r1, [r0, #56]\n\t"
-                     "b 14b\n"
-                     "19:"
-                     : EW_RUN_OPERANDS
-                     : [s] "r"(s), EW_RECIP_OPERANDS
-                     : "cc", "memory");
-}
 /* Runs of a piece, the first of m > 0 pixels, as long as they pay: what the twin in runs_of_texture (span.c) does, in
  * 97 instructions a run besides its pixels where GCC needs 132. Returns what that does. */
 EW_ALWAYS_INLINE int32_t ew_walk_runs(ew_rows *rows, int32_t m)
@@ -402,15 +334,13 @@ EW_ALWAYS_INLINE int32_t ew_walk_runs(ew_rows *rows, int32_t m)
                      "12:\tcmp r8, r9\n\t"
                      "it ge\n\tmovge r8, r9\n\t"
                      "bge 15b\n\t"
-                     "ldr r2, [r0, #116]\n\t"                      /* shortest                     */
+                     "ldr r2, [r0, #108]\n\t"                      /* shortest                     */
                      "cmp r8, r2\n\t"
                      "bge 15b\n\t"
                      "b 18f\n"
                      "19:\tmov r8, #0\n"
                      "18:"
-                     : [w] "=&r"(w), [dw] "=&r"(dw), [t] "=&r"(t), [high] "=&r"(high), [apart] "=&r"(apart), [z] "=&r"(z),
-                       [n] "+r"(n), [dhigh] "=&r"(dhigh), [low] "=&r"(low), [dlow] "=&r"(dlow), [texels] "=&r"(texels),
-                       [turn] "=&r"(turn)
+                     : EW_RUN_OPERANDS
                      : [s] "r"(s), EW_RECIP_OPERANDS
                      : "cc", "memory");
     return n;

@@ -138,13 +138,8 @@ EW_ALWAYS_INLINE void fill_packed(ew_packing *k, ew_pen *pen, packed at, packed 
 #endif
 }
 
-/* The same, with u and v at the first pixel and their steps. Where machine code has tangents it is rare. */
-#if EW_HAS_TANGENT_LOOP && !EW_TRACE
-EW_NOINLINE
-#else
-EW_ALWAYS_INLINE
-#endif
-void fill_pixels(ew_packing *k, const ew_triangle *t, ew_pen *pen, uint32_t u, uint32_t du,
+/* The same, with u and v at the first pixel and their steps. */
+EW_ALWAYS_INLINE void fill_pixels(ew_packing *k, const ew_triangle *t, ew_pen *pen, uint32_t u, uint32_t du,
                                   uint32_t v, uint32_t dv, int32_t n)
 {
     fill_packed(k, pen, pack(k, t, u, v), pack_step(k, t, du, dv), n);
@@ -599,28 +594,6 @@ EW_NOINLINE int32_t next_of_wide(ew_raster *raster, const ew_triangle *t, int32_
 
 /* ---- rows ---- */
 
-#if EW_HAS_ROW_LOOP && !EW_TRACE
-/* For the machine code of arch.h: rows from `row` to below `end`. */
-EW_ALWAYS_INLINE void rows_init(ew_rows *rows, const ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
-{
-    const ew_packing *k = &raster->work.packing;
-    const int32_t offset = (row - raster->target.first_row) * raster->target.stride; /* 2^24 at most */
-    rows->edge = edge;
-    rows->planes = t->plane.narrow;
-    rows->x0 = raster->scissor.x0, rows->x1 = raster->scissor.x1;
-    rows->column = t->column;
-    rows->lead = t->w_lead;
-    rows->dw = depth_step(t->plane.narrow[EW_PLANE_W].dx, t->w_lead);
-    rows->depth = raster->target.depth + offset;
-    rows->stride = raster->target.stride * 2u;
-    rows->apart = (uint32_t)((uintptr_t)raster->target.colour - (uintptr_t)raster->target.depth);
-    rows->texels = k->texels;
-    rows->turn = k->turn, rows->mask = k->mask;
-    rows->left = end - row;
-    rows->reached = 0;
-}
-#endif
-
 /* To the next row; shades are rare. */
 EW_ALWAYS_INLINE void planes_step(ew_triangle *t, int wide, int attributes)
 {
@@ -636,6 +609,29 @@ EW_ALWAYS_INLINE void planes_step(ew_triangle *t, int wide, int attributes)
     for (int i = EW_PLANE_SHADE; i <= attributes; i++) p[i].row += p[i].dy;
 }
 
+#if EW_HAS_TANGENT_LOOP && !EW_TRACE
+/* Makes ready for the machine code of runs, for which the table's reciprocal has to do. */
+EW_NOINLINE void runs_init(ew_raster *raster, const ew_triangle *t)
+{
+    const ew_packing *k = &raster->work.packing;
+    ew_rows *rows = &raster->work.now.span.fill.textured.rows;
+    rows->texels = k->texels;
+    rows->turn = k->turn, rows->mask = k->mask;
+    rows->apart = (uint32_t)((uintptr_t)raster->target.colour - (uintptr_t)raster->target.depth);
+    rows->recip = ew_recip_entries;
+    rows->u_shift = t->u_shift, rows->v_shift = t->v_shift;
+    rows->u_base = t->u_base, rows->v_base = t->v_base;
+    rows->low = k->low, rows->log2_height = k->log2_height;
+    rows->is_256 = k->is_256;
+    rows->shortest = t->shortest;
+    raster->work.now.span.has_rows = 1;
+}
+EW_ALWAYS_INLINE int has_quick_runs(const ew_triangle *t) { return !t->newton && !is_affine(t); }
+#else
+EW_ALWAYS_INLINE void runs_init(ew_raster *raster, const ew_triangle *t) { (void)raster, (void)t; }
+EW_ALWAYS_INLINE int has_quick_runs(const ew_triangle *t) { return (void)t, 0; }
+#endif
+
 /* A span that has to be cut, or whose runs have to be found. */
 EW_NOINLINE void span_of_texture(ew_raster *raster, const ew_triangle *t, int32_t x, int32_t y, int32_t n)
 {
@@ -643,6 +639,7 @@ EW_NOINLINE void span_of_texture(ew_raster *raster, const ew_triangle *t, int32_
     ew_pen *pen = &raster->work.now.span.fill.textured.pen;
     EW_KEEP_ORDER(l);
     pen_at(pen, raster, x, y);
+    if (!raster->work.now.span.has_rows && has_quick_runs(t)) runs_init(raster, t);
     //@ dynamic_split n;
     while (n > 0) {
         int32_t m = n;
@@ -686,70 +683,10 @@ EW_ALWAYS_INLINE void run_of_texture(ew_raster *raster, const ew_triangle *t, in
     fill_pixels(&raster->work.packing, t, &pen, u, du, v, dv, n);
 }
 
-#if EW_HAS_TANGENT_LOOP && !EW_TRACE
-/* Whether the machine code may draw the runs: the table's reciprocal will do. */
-EW_ALWAYS_INLINE int has_tangents(const ew_triangle *t) { return !t->newton && !is_affine(t) && !is_per_pixel(t); }
-
-EW_ALWAYS_INLINE void tangents_init(ew_rows *rows, const ew_packing *k, const ew_triangle *t)
-{
-    rows->recip = ew_recip_entries;
-    rows->u_shift = t->u_shift, rows->v_shift = t->v_shift;
-    rows->u_base = t->u_base, rows->v_base = t->v_base;
-    rows->low = k->low, rows->log2_height = k->log2_height;
-    rows->sure = t->sure_run;
-    rows->is_256 = k->is_256;
-    rows->shortest = t->shortest;
-}
-
-/* A wide triangle's span that is one run, surely. */
-EW_ALWAYS_INLINE void run_of_wide(ew_raster *raster, const ew_triangle *t, int32_t x, int32_t y, int32_t n)
-{
-    ew_span_work *span = &raster->work.now.span;
-    ew_pen *pen = &span->fill.textured.pen;
-    wide_start(&span->linear, t, x);
-    pen_at(pen, raster, x, y);
-    pen->w = depth_of(span->linear.w, t->w_lead), pen->dw = depth_step(span->linear.dw, t->w_lead);
-    span->left = n;
-    runs_of_texture(&raster->work.packing, t, span, n);
-}
-
-/* As ew_rows_of_texture, by the machine code: rows of narrow triangles, as far as they are one run each, and runs. */
-EW_NOINLINE int rows_of_tangents(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
-{
-    ew_span_work *span = &raster->work.now.span;
-    ew_rows *rows = &span->fill.textured.rows;
-    if (row >= end) return 0;
-    span->has_rows = 1;
-    rows_init(rows, raster, t, edge, row, end);
-    tangents_init(rows, &raster->work.packing, t);
-    for (;;) {
-        if (!t->is_wide) ew_walk_tangents(rows);
-        if (rows->left == 0) return rows->reached != 0;
-        const int32_t x = larger(edge[0].x, rows->x0), n = smaller(edge[1].x, rows->x1) - x;
-        if (n > 0) {
-            rows->reached = 1;
-            if (n <= t->sure_run) run_of_wide(raster, t, x, end - rows->left, n); /* of narrow ones it is drawn */
-            else span_of_texture(raster, t, x, end - rows->left, n);
-        }
-        rows->depth += raster->target.stride;
-        planes_step(t, t->is_wide, 2);
-        ew_edges_step(edge);
-        if (--rows->left == 0) return rows->reached != 0;
-    }
-}
-#else
-EW_ALWAYS_INLINE int has_tangents(const ew_triangle *t) { return (void)t, 0; }
-EW_ALWAYS_INLINE int rows_of_tangents(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
-{
-    return (void)raster, (void)t, (void)edge, (void)row, (void)end, 0;
-}
-#endif
-
 EW_HOT int ew_rows_of_texture(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
 {
     int reached = 0;
     raster->work.now.span.is_ready = raster->work.now.span.has_rows = 0;
-    if (has_tangents(t)) return rows_of_tangents(raster, t, edge, row, end);
     for (; row < end; row++) {
         const int32_t x = larger(edge[0].x, raster->scissor.x0), n = smaller(edge[1].x, raster->scissor.x1) - x;
         if (n > 0) {
@@ -810,11 +747,25 @@ void ew_planes_go(ew_triangle *t, uint32_t columns, uint32_t rows)
 #if EW_HAS_ROW_LOOP && !EW_TRACE
 EW_HOT int ew_rows_packed(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
 {
+    const ew_packing *k = &raster->work.packing;
     ew_rows *rows = &raster->work.now.span.fill.textured.rows;
+    const int32_t offset = (row - raster->target.first_row) * raster->target.stride; /* 2^24 at most */
     if (row >= end) return 0;
-    rows_init(rows, raster, t, edge, row, end);
+    rows->edge = edge;
+    rows->planes = t->plane.narrow;
+    rows->x0 = raster->scissor.x0, rows->x1 = raster->scissor.x1;
+    rows->column = t->column;
+    rows->lead = t->w_lead;
+    rows->dw = depth_step(t->plane.narrow[EW_PLANE_W].dx, t->w_lead);
+    rows->depth = raster->target.depth + offset;
+    rows->stride = raster->target.stride * 2u;
+    rows->apart = (uint32_t)((uintptr_t)raster->target.colour - (uintptr_t)raster->target.depth);
+    rows->texels = k->texels;
+    rows->turn = k->turn, rows->mask = k->mask;
     rows->dhigh = t->plane.narrow[EW_PLANE_U].dx, rows->dlow = t->plane.narrow[EW_PLANE_V].dx;
-    ew_walk_rows(rows, raster->work.packing.is_256);
+    rows->left = end - row;
+    rows->reached = 0;
+    ew_walk_rows(rows, k->is_256);
     return rows->reached != 0;
 }
 #else
