@@ -42,7 +42,7 @@ enum { PLANE_NEAR, PLANE_LEFT, PLANE_RIGHT, PLANE_TOP, PLANE_BOTTOM, PLANE_COUNT
 /* Not negative on the inner side of the plane. A corner that has its place on the screen is
  * inside of all of them, whatever the rounding of this unit says: the other triangles that
  * it belongs to draw to that place. */
-static int64_t distance(const ew_clip_vertex *v, int plane, int64_t near_w)
+static EW_OWN_FRAME int64_t distance(const ew_clip_vertex *v, int plane, int64_t near_w)
 {
     int64_t d;
     switch (plane) {
@@ -94,12 +94,13 @@ static EW_OWN_FRAME int clip_by(ew_clip_vertex *a, int count, int plane, int64_t
     return made;
 }
 
+/* Behind the near plane, so w > 0. */
 static EW_OWN_FRAME int leaves_guard(const ew_clip_vertex *polygon, int count)
 {
     for (int i = 0; i < count; i++) {
-        for (int plane = PLANE_LEFT; plane < PLANE_COUNT; plane++) {
-            if (distance(&polygon[i], plane, 0) < 0) return 1;
-        }
+        const ew_clip_vertex *v = &polygon[i];
+        const int64_t guard = v->w * GUARD;
+        if (v->corner < 0 && (ew_abs64(v->x) > (uint64_t)guard || ew_abs64(v->y) > (uint64_t)guard)) return 1;
     }
     return 0;
 }
