@@ -46,14 +46,16 @@ static inline uint64_t ew_wrap_mul64(uint64_t a, int32_t b) { return a * (uint64
  * 64 x 64 bits; all give the same bits. */
 uint64_t ew_mul_u32_pieces(uint32_t a, uint32_t b);
 int64_t ew_mul_s32_pieces(int32_t a, int32_t b);
-/* a mod 2^16. A compiler that sees through it shifts twice on ARMv6-M. */
+/* a mod 2^16. GCC shifts twice for it on ARMv6-M. */
 static inline uint32_t ew_low16(uint32_t a)
 {
-    uint16_t low = (uint16_t)a;
-#if defined(__GNUC__)
-    __asm__("" : "+r"(low));
-#endif
+#if defined(__GNUC__) && (defined(__ARM_ARCH_6M__) || defined(__ARM_ARCH_8M_BASE__)) && !defined(EW_PORTABLE)
+    uint32_t low;
+    __asm__("uxth %0, %1" : "=l"(low) : "l"(a));
     return low;
+#else
+    return a & 0xFFFFu;
+#endif
 }
 static inline uint32_t ew_mulh_u32_pieces(uint32_t a, uint32_t b)
 {
