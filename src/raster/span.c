@@ -639,7 +639,7 @@ EW_NOINLINE void span_of_texture(ew_raster *raster, const ew_triangle *t, int32_
     ew_pen *pen = &raster->work.now.span.fill.textured.pen;
     EW_KEEP_ORDER(l);
     pen_at(pen, raster, x, y);
-    if (!raster->work.now.span.has_rows && has_quick_runs(t)) runs_init(raster, t);
+    if (has_quick_runs(t) && !raster->work.now.span.has_rows) runs_init(raster, t);
     //@ dynamic_split n;
     while (n > 0) {
         int32_t m = n;
