@@ -46,7 +46,7 @@ typedef struct ew_triangle {
     uint8_t run_shift;          /* -run_exponent, 0 to 31: of ew_one_run_suffices */
     uint8_t attributes;         /* how many planes follow that of w: 0, 2, 5     */
     uint8_t is_wide;
-    uint8_t walk;               /* WALK_ANY, WALK_TEXTURE, WALK_PACKED           */
+    uint8_t walk;               /* WALK_ANY to WALK_PACKED                      */
     uint8_t rung;               /* never EW_RUNG_AUTO                            */
     uint8_t newton;             /* whether the better reciprocal is needed       */
     uint8_t plain;              /* PLAIN_NEVER, PLAIN_SOMETIMES, PLAIN_ALWAYS    */
@@ -213,28 +213,29 @@ typedef struct ew_packing {
     uint8_t is_256;        /* the texture is 256 x 256                                     */
 } ew_packing;
 
-/* What the machine code of arch.h reads while it draws rows of packed planes, or runs; it knows the order. */
+/* What the machine code of arch.h reads while it draws rows, besides the triangle; it knows the order. */
 typedef struct ew_rows {
     const uint16_t *texels; /* to `end`: as in ew_packing                                  */
     uint32_t turn, mask;
-    uint32_t dhigh, dlow;  /* of packed planes                                             */
+    uint32_t dhigh, dlow;
     const uint16_t *rest, *end;
     ew_edge *edge;
-    ew_plane32 *planes;
+    ew_plane32 *planes;    /* inside of their triangle                                     */
     int32_t x0, x1;        /* the scissor's                                                */
-    uint32_t column;       /* that planes belong to                                        */
-    uint32_t lead, dw;     /* 1/z becomes depth by a shift; its step, uq1.31               */
     uint16_t *depth;       /* the row's first pixel                                        */
     uint32_t stride;       /* bytes                                                        */
-    uint32_t apart;        /* from a pixel's depth to its colour, bytes                    */
+    uint32_t apart;        /* from a pixel's depth to its colour, bytes, less EW_APART_LESS */
     int32_t left;          /* rows                                                         */
-    uint32_t reached;      /* not 0: some pixel was                                        */
-    /* for runs, of which `reached` is the last one's length: */
+    int32_t reached;       /* of which so many have pixels                                 */
+    /* for runs: */
     const uint16_t *recip; /* the table                                                    */
-    uint32_t u_shift, v_shift, u_base, v_base; /* as in ew_triangle                        */
     uint32_t low, log2_height; /* as in ew_packing                                         */
     uint32_t is_256;
-    int32_t shortest;      /* px: shorter runs are not drawn here, but for a piece's last  */
+    uint16_t *first;       /* depth of the span's first pixel                              */
+    int32_t pixels, run;   /* of the span, of the run that is drawn                        */
+    uint32_t drawn;        /* of the span, if it is left to span.c in between              */
+    /* for span.c: */
+    uintptr_t origin;      /* where row 0 of the depth buffer were                         */
 } ew_rows;
 
 /* Where the next pixel goes, and 1/z there, uq1.31. */
@@ -333,7 +334,7 @@ typedef struct ew_span_work {
     int32_t left;      /* pixels of the piece                                             */
     int32_t first;     /* pixels of the run that a span began with, where is_ready         */
     uint8_t is_ready;  /* `by` and `limit` are those of all spans of the triangle          */
-    uint8_t has_rows;  /* fill.textured.rows is made ready for the triangle's runs         */
+    uint8_t has_rows;  /* what of fill.textured.rows is the same for all triangles is made ready */
     union {
         struct {
             ew_pen pen;

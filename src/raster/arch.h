@@ -71,11 +71,23 @@ EW_ALWAYS_INLINE int ew_zeros_of(uint32_t w) { return ew_clz32(w | 1u); }
 #if defined(__GNUC__) && defined(__thumb__) && defined(__OPTIMIZE__) && !defined(EW_PORTABLE) && \
     (defined(__thumb2__) || !defined(__clang__))
 #define EW_HAS_PIXEL_LOOP 1
-typedef char ew_rows_order[offsetof(ew_rows, edge) == 28 && offsetof(ew_rows, depth) == 56 && offsetof(ew_rows, reached) == 72 &&
-                           offsetof(ew_rows, u_shift) == 80 && offsetof(ew_rows, shortest) == 108 && offsetof(ew_linear, dv) == 20 &&
-                           offsetof(ew_span_work, fill.textured.rows) == 124 && offsetof(ew_span_work, limit) == 76 &&
-                           offsetof(ew_span_work, left) == 92 && offsetof(ew_span_work, fill.textured.pen) == 104 &&
-                           offsetof(ew_edge, dy) == 16 && sizeof(ew_edge) == 20 && sizeof(ew_plane32) == 12 ? 1 : -1];
+typedef char ew_rows_order[offsetof(ew_rows, edge) == 28 && offsetof(ew_rows, depth) == 44 && offsetof(ew_rows, left) == 56 &&
+                           offsetof(ew_rows, recip) == 64 && offsetof(ew_rows, is_256) == 76 && offsetof(ew_rows, drawn) == 92 && offsetof(ew_linear, dv) == 20 &&
+                           offsetof(ew_triangle, plane) == 40 && offsetof(ew_triangle, shortest) == 8 &&
+                           offsetof(ew_triangle, run_shift) == 14 && offsetof(ew_triangle, w_lead) == 21 &&
+                           offsetof(ew_triangle, u_base) == 28 && offsetof(ew_span_work, fill.textured.rows) == 124 &&
+                           offsetof(ew_span_work, by) == 52 && offsetof(ew_span_work, limit) == 76 &&
+                           offsetof(ew_span_work, left) == 92 && offsetof(ew_span_work, first) == 96 &&
+                           offsetof(ew_span_work, is_ready) == 100 && offsetof(ew_span_work, fill.textured.pen) == 104 &&
+                           offsetof(ew_edge, dy) == 16 && sizeof(ew_edge) == 20 && sizeof(ew_plane32) == 12 &&
+                           sizeof(ew_plane64) == 24 ? 1 : -1];
+/* What is taken off ew_rows.apart: the pixel loop of Thumb-2 has gone on to the next pixel's depth when it stores a
+ * colour. */
+#if defined(__thumb2__)
+#define EW_APART_LESS 2u
+#else
+#define EW_APART_LESS 0u
+#endif
 #if defined(__thumb2__)
 #define EW_PIXEL(index) \
     "ldrh %[t], [%[z]], #2\n\t" \
@@ -138,68 +150,80 @@ EW_ALWAYS_INLINE uint32_t ew_fill_pixels(ew_packing *k, uint16_t *c, uint16_t *z
 #define EW_EDGES_STEP \
     "ldmia r1!, {r2, r3, r4, r5, r6}\n\t" EW_EDGE_STEP("-20") \
     "ldm r1, {r2, r3, r4, r5, r6}\n\t" EW_EDGE_STEP("0")
-#define EW_ROWS(before, index, after) \
-    "5:\tadd r1, %[s], #28\n\t" \
-    "ldm r1, {r1, r2, r3, r4, r5}\n\t"             /* edge, planes, x0, x1, column */ \
+/* A row's head: r2 at the planes, where its first pixel's depth is and how many columns from theirs, n > 0 pixels
+ * in r8; to 6 if there is none. Takes r1 to r6 and r8. */
+#define EW_ROW_HEAD(z, columns) \
+    "add r1, r0, #28\n\t" \
+    "ldm r1, {r1, r2, r3, r4}\n\t"                 /* edge, planes, x0, x1         */ \
     "ldr r6, [r1]\n\t"                             /* x, from the left edge        */ \
     "ldr r8, [r1, #20]\n\t"                        /* n, from the right one        */ \
     "cmp r6, r3\n\tit lt\n\tmovlt r6, r3\n\t" \
     "cmp r8, r4\n\tit gt\n\tmovgt r8, r4\n\t" \
+    "ldrd r1, r3, [r0, #44]\n\t"                   /* depth, stride                */ \
+    "add r3, r3, r1\n\t" \
+    "str r3, [r0, #44]\n\t" \
     "subs r8, r8, r6\n\t" \
     "ble 6f\n\t" \
-    "sub r5, r6, r5\n\t"                           /* columns                      */ \
-    "ldrd r1, r3, [%[s], #56]\n\t"                 /* depth, stride                */ \
-    "add r4, r1, r6, lsl #1\n\t"                   /* z                            */ \
-    "add r1, r1, r3\n\t" \
-    "str r1, [%[s], #56]\n\t" \
-    "ldmia r2!, {r1, r3, r6}\n\t"                  /* of 1/z: row, dx, dy          */ \
-    "add r6, r6, r1\n\t" \
-    "str r6, [r2, #-12]\n\t" \
-    "mla r1, r3, r5, r1\n\t" \
+    "ldrh " columns ", [r2, #-28]\n\t"             /* column                       */ \
+    "sub " columns ", r6, " columns "\n\t" \
+    "add " z ", r1, r6, lsl #1\n\t"
+/* One row less that pixels are reached on. */
+#define EW_ROW_EMPTY \
+    "ldr r1, [r0, #60]\n\t" \
+    "subs r1, r1, #1\n\t" \
+    "str r1, [r0, #60]\n\t"
+/* To the next row, at 5, or on behind the last. */
+#define EW_ROW_END \
+    "ldr r1, [r0, #28]\n\t" EW_EDGES_STEP \
+    "ldr r2, [r0, #56]\n\t"                        /* left                         */ \
+    "subs r2, r2, #1\n\t" \
+    "str r2, [r0, #56]\n\t" \
+    "bne 5b\n\t"
+#define EW_ROWS(before, index, after) \
+    "5:\t" EW_ROW_HEAD("r4", "lr") \
+    "ldrb r6, [r2, #-19]\n\t"                      /* w_lead                       */ \
+    "ldm r2, {r1, r5, r9}\n\t"                     /* of 1/z: row, dx, dy          */ \
+    "add r9, r9, r1\n\t" \
+    "str r9, [r2], #12\n\t" \
+    "mla r1, r5, lr, r1\n\t" \
+    "lsrs r1, r1, r6\n\t" \
+    "asrs r5, r5, r6\n\t" \
+    "lsls r1, r1, #1\n\t" \
+    "lsls r5, r5, #1\n\t" \
     "ldm r2, {r3, r6, r9, r10, r11, r12}\n\t"      /* of both packed: high, low    */ \
     "adds r12, r12, r10\n\t" \
     "adc r9, r9, r3\n\t" \
     "str r9, [r2]\n\t" \
     "str r12, [r2, #12]\n\t" \
-    "umull r12, r9, r11, r5\n\t" \
-    "mla r9, r6, r5, r9\n\t" \
+    "umull r12, r9, r11, lr\n\t" \
+    "mla r9, r6, lr, r9\n\t" \
     "adds r10, r10, r12\n\t" \
     "adc r3, r3, r9\n\t" \
-    "ldrd r2, r5, [%[s], #48]\n\t"                 /* lead, dw                     */ \
-    "lsrs r1, r1, r2\n\t" \
-    "lsls r1, r1, #1\n\t" \
-    "ldr r9, [%[s], #64]\n\t"                      /* apart, less the step of z    */ \
-    "ldr r12, [%[s]]\n\t"                          /* texels                       */ \
-    "subs r9, r9, #2\n\t" \
-    "str r8, [%[s], #72]\n\t"                      /* reached                      */ \
+    "ldr r9, [r0, #52]\n\t"                        /* apart                        */ \
+    "ldr r12, [r0]\n\t"                            /* texels                       */ \
     before EW_PIXELS(index) after \
-    "7:\tldr r1, [%[s], #28]\n\t" EW_EDGES_STEP \
-    "ldr r2, [%[s], #68]\n\t"                      /* left                         */ \
-    "subs r2, r2, #1\n\t" \
-    "str r2, [%[s], #68]\n\t" \
-    "bne 5b\n\t" \
+    "7:\t" EW_ROW_END \
     "b 7f\n" \
-    "6:\tldm r2, {r1, r3, r4, r5, r6, r8, r9, r10, r11}\n\t" /* no pixel: planes and rows only */ \
+    "6:\t" EW_ROW_EMPTY \
+    "ldm r2, {r1, r3, r4, r5, r6, r8, r9, r10, r11}\n\t" /* planes only                 */ \
     "add r1, r1, r4\n\t" \
     "adds r9, r9, r11\n\t" \
     "adc r5, r5, r8\n\t" \
     "str r1, [r2]\n\t" \
     "str r5, [r2, #12]\n\t" \
     "str r9, [r2, #24]\n\t" \
-    "ldrd r1, r3, [%[s], #56]\n\t" \
-    "add r1, r1, r3\n\t" \
-    "str r1, [%[s], #56]\n\t" \
     "b 7b\n" \
     "7:"
 #define EW_ROWS_OPERANDS \
     [z] "=&r"(z), [n] "=&r"(n), [w] "=&r"(w), [high] "=&r"(high), [low] "=&r"(low), [t] "=&r"(t), [dw] "=&r"(dw), \
         [dhigh] "=&r"(dhigh), [dlow] "=&r"(dlow), [texels] "=&r"(texels), [apart] "=&r"(apart), [turn] "=&r"(turn)
-EW_ALWAYS_INLINE void ew_walk_rows(ew_rows *rows, int is_256)
+EW_ALWAYS_INLINE void ew_walk_rows(ew_rows *rows, const ew_triangle *triangle, int is_256)
 {
     register ew_rows *s __asm__("r0") = rows;
     register uint32_t w __asm__("r1"), t __asm__("r2"), high __asm__("r3"), z __asm__("r4"), dw __asm__("r5");
     register uint32_t dhigh __asm__("r6"), n __asm__("r8"), apart __asm__("r9"), low __asm__("r10"), dlow __asm__("r11");
     register uint32_t texels __asm__("r12"), turn __asm__("lr");
+    (void)triangle;
     if (is_256) {
         __asm__ volatile(EW_ROWS("", "uxth %[t], %[high], ror #24\n\t", "") : EW_ROWS_OPERANDS : [s] "r"(s) : "cc", "memory");
     } else {
@@ -208,16 +232,19 @@ EW_ALWAYS_INLINE void ew_walk_rows(ew_rows *rows, int is_256)
                          : EW_ROWS_OPERANDS : [s] "r"(s) : "cc", "memory");
     }
 }
-/* A run of n > 0 pixels with a tangent, where the table's reciprocal will do: what `tangent`, `pack` and
- * fill_packed (span.c) do, in 62 instructions besides the pixels where GCC needs 90. On the way in w', u, v and
- * their steps are in r1, r4, r10 and r3, r9, r11, z in r6, n in r8. Operands as in EW_RUN_OPERANDS. */
+/* A run of n > 0 pixels with a tangent, where the table's reciprocal will do: what `tangent` and `pack` (span.c) do,
+ * in 54 instructions. On the way in w', u, v and their steps are in r1, r4, r10 and r3, r9, r11, n is in r8; r5 is
+ * how far the tangent's pixel is from where w', u, v are. On the way out both packed are in r4, r10, their steps in
+ * r9, r11; r6 and r8 are left alone. */
 #define EW_TANGENT \
-    "lsrs r5, r8, #1\n\t"                          /* half                         */ \
     "mla r1, r3, r5, r1\n\t"                       /* w' there, and its reciprocal */ \
     "clz r2, r1\n\t" \
     "lsls r1, r1, r2\n\t" \
+    "mla r4, r9, r5, r4\n\t" \
+    "mla r10, r11, r5, r10\n\t" \
+    "lsrs r5, r8, #1\n\t"                          /* from there to the first pixel */ \
     "ubfx r12, r1, %[to_index], %[index_bits]\n\t" \
-    "ldr lr, [r0, #76]\n\t"                        /* recip                        */ \
+    "ldr lr, [r0, #64]\n\t"                        /* recip                        */ \
     "add r12, lr, r12, lsl #1\n\t" \
     "ubfx r1, r1, %[to_fraction], #16\n\t" \
     "ldrh lr, [r12]\n\t" \
@@ -228,8 +255,11 @@ EW_ALWAYS_INLINE void ew_walk_rows(ew_rows *rows, int is_256)
     "lsrs r1, r1, #2\n\t" \
     "rsb r1, r1, lr, lsl #14\n\t" \
     EW_TANGENT_OF("r4", "r9") EW_TANGENT_OF("r10", "r11") \
-    "add r1, r0, #80\n\t" \
-    "ldm r1, {r1, r2, r3, r5, r12, lr}\n\t"        /* shifts, bases, low, log2_height */ \
+    "ldr r12, [r0, #32]\n\t"                       /* planes, and what lies above: */ \
+    "ldrb r1, [r12, #-17]\n\t"                     /* u_shift, v_shift             */ \
+    "ldrb r2, [r12, #-16]\n\t" \
+    "ldrd r3, r5, [r12, #-12]\n\t"                 /* u_base, v_base               */ \
+    "ldrd r12, lr, [r0, #68]\n\t"                  /* low, log2_height             */ \
     "lsls r4, r4, r1\n\t" \
     "adds r4, r4, r3\n\t" \
     "lsl r9, r9, r1\n\t" \
@@ -245,9 +275,8 @@ EW_ALWAYS_INLINE void ew_walk_rows(ew_rows *rows, int is_256)
     "add r9, r9, r1\n\t" \
     "lsl r10, r10, lr\n\t" \
     "lsl r11, r11, lr\n\t"
-/* a at the tangent's pixel over w', the slope, and a at the run's first pixel */
+/* a over w', its slope, and a at the run's first pixel */
 #define EW_TANGENT_OF(a, da) \
-    "mla " a ", " da ", r5, " a "\n\t" \
     "lsl " a ", " a ", r2\n\t" \
     "smull r12, " a ", r1, " a "\n\t" \
     "lsl r12, " a ", #2\n\t" \
@@ -256,20 +285,22 @@ EW_ALWAYS_INLINE void ew_walk_rows(ew_rows *rows, int is_256)
     "lsl " da ", " da ", r2\n\t" \
     "smull r12, " da ", r1, " da "\n\t" \
     "mls " a ", " da ", r5, " a "\n\t"
-/* r1 is 1/z, r2 its step, r5 as `apart` less the step of z */
+/* n pixels from r6 on, with what EW_TANGENT leaves behind and the pen's 1/z, which r1 is afterwards. */
 #define EW_RUN_PIXELS \
-    "ldr r12, [r0]\n\t"                            /* texels                       */ \
-    "ldr r3, [r0, #104]\n\t"                       /* is_256                       */ \
+    "sub r12, r0, #12\n\t" \
+    "ldm r12, {r1, r2, r3, r12, lr}\n\t"           /* the pen's w, dw; texels, turn */ \
+    "ldr r5, [r0, #52]\n\t"                        /* apart                        */ \
+    "ldr r3, [r0, #76]\n\t"                        /* is_256                       */ \
     "cmp r3, #0\n\tbeq 16f\n\t" \
     EW_PIXELS("uxth %[t], %[high], ror #24\n\t") \
     "\n\tb 17f\n" \
     "16:\tpush {r0}\n\t" \
-    "ldrd lr, r0, [r0, #4]\n\t"                    /* turn, mask                   */ \
+    "ldr r0, [r0, #8]\n\t"                         /* mask                         */ \
     EW_PIXELS("ror %[t], %[high], lr\n\tand %[t], %[t], r0\n\t") \
     "\n\tpop {r0}\n" \
     "17:"
 #define EW_RUN_OPERANDS \
-    [w] "=&r"(w), [dw] "=&r"(dw), [t] "=&r"(t), [high] "=&r"(high), [apart] "=&r"(apart), [z] "=&r"(z), [n] "+r"(n), \
+    [w] "=&r"(w), [dw] "=&r"(dw), [t] "=&r"(t), [high] "=&r"(high), [apart] "=&r"(apart), [z] "=&r"(z), [n] "=&r"(n), \
         [dhigh] "=&r"(dhigh), [low] "=&r"(low), [dlow] "=&r"(dlow), [texels] "=&r"(texels), [turn] "=&r"(turn)
 #define EW_RUN_REGISTERS \
     register uint32_t w __asm__("r1"), dw __asm__("r2"), t __asm__("r3"), high __asm__("r4"), apart __asm__("r5"); \
@@ -278,68 +309,233 @@ EW_ALWAYS_INLINE void ew_walk_rows(ew_rows *rows, int is_256)
 #define EW_RECIP_OPERANDS \
     [to_index] "i"(31 - EW_RECIP_BITS), [index_bits] "i"(EW_RECIP_BITS), [to_fraction] "i"(15 - EW_RECIP_BITS)
 
-#define EW_HAS_TANGENT_LOOP 1
-/* Runs of a piece, the first of m > 0 pixels, as long as they pay: what the twin in runs_of_texture (span.c) does, in
- * 97 instructions a run besides its pixels where GCC needs 132. Returns what that does. */
-EW_ALWAYS_INLINE int32_t ew_walk_runs(ew_rows *rows, int32_t m)
+/* Planes at r2, r5 columns on: w', u, v to r1, r4, r10, their steps to r3, r9, r11; and down to the next row. */
+#define EW_NARROW_AT \
+    "ldm r2!, {r1, r3, r4}\n\t" \
+    "add r4, r4, r1\n\t" \
+    "str r4, [r2, #-12]\n\t" \
+    "mla r1, r3, r5, r1\n\t" \
+    "ldm r2!, {r4, r9, r10}\n\t" \
+    "add r10, r10, r4\n\t" \
+    "str r10, [r2, #-12]\n\t" \
+    "mla r4, r9, r5, r4\n\t" \
+    "ldm r2, {r10, r11, r12}\n\t" \
+    "add r12, r12, r10\n\t" \
+    "str r12, [r2]\n\t" \
+    "mla r10, r11, r5, r10\n\t"
+#define EW_WIDE_AT \
+    "adds r2, r2, #48\n\t" \
+    "ldm r2, {r1, r3, r4, r9, r10, r12}\n\t"       /* v: row, dx, dy, low words first */ \
+    "adds r10, r10, r1\n\t" \
+    "adc r12, r12, r3\n\t" \
+    "strd r10, r12, [r2], #-24\n\t" \
+    "umull r4, r12, r4, r5\n\t" \
+    "mla r12, r9, r5, r12\n\t" \
+    "adds r4, r4, r1\n\t" \
+    "adc r10, r12, r3\n\t" \
+    "mov r11, r9\n\t" \
+    "ldm r2, {r1, r3, r4, r9, r12, lr}\n\t"        /* u                            */ \
+    "adds r12, r12, r1\n\t" \
+    "adc lr, lr, r3\n\t" \
+    "strd r12, lr, [r2], #-24\n\t" \
+    "umull r4, r12, r4, r5\n\t" \
+    "mla r12, r9, r5, r12\n\t" \
+    "adds r4, r4, r1\n\t" \
+    "adc r4, r12, r3\n\t" \
+    "ldrd r1, r3, [r2]\n\t"                        /* w'                           */ \
+    "ldrd r12, lr, [r2, #16]\n\t" \
+    "adds r12, r12, r1\n\t" \
+    "adc lr, lr, r3\n\t" \
+    "strd r12, lr, [r2]\n\t" \
+    "ldrd r12, lr, [r2, #8]\n\t" \
+    "umull r12, r2, r12, r5\n\t" \
+    "mla r2, lr, r5, r2\n\t" \
+    "adds r1, r1, r12\n\t" \
+    "adc r1, r2, r3\n\t" \
+    "mov r3, lr\n\t"
+/* the plane of 64 bits at r2 without pixels, and to the next one */
+#define EW_WIDE_STEP \
+    "ldrd r1, r3, [r2]\n\t" \
+    "ldrd r4, r5, [r2, #16]\n\t" \
+    "adds r1, r1, r4\n\t" \
+    "adcs r3, r5\n\t" \
+    "strd r1, r3, [r2], #24\n\t"
+
+/* What ew_walk_spans returns at the end of the last row; for a span that it leaves to span.c; or, 0 or above, what
+ * runs_of_texture does. */
+enum { EW_ROWS_DONE = -2, EW_SPAN_LEFT = -1 };
+
+#define EW_HAS_SPAN_LOOP 1
+/* Rows of a triangle whose runs the table's reciprocal does for, as the twin of ew_rows_of_texture (span.c) draws
+ * them. Planes are on the next row when a span begins. A run takes 90 instructions besides its pixels where GCC needs
+ * 132, a row 60, or 80 with planes of 64 bits, where it needs 120 to 250. */
+EW_ALWAYS_INLINE int32_t ew_walk_spans(ew_rows *rows)
 {
     register ew_rows *s __asm__("r0") = rows;
-    register int32_t n __asm__("r8") = m;
+    register int32_t n __asm__("r8");
     EW_RUN_REGISTERS;
-    __asm__ volatile("15:\tsub r1, r0, #124\n\t"
-                     "ldm r1, {r1, r3, r4, r9, r10, r11}\n\t"       /* linear                       */
-                     "mla r2, r3, r8, r1\n\t"
-                     "str r2, [r0, #-124]\n\t"
-                     "mla r2, r9, r8, r4\n\t"
-                     "str r2, [r0, #-116]\n\t"
-                     "mla r2, r11, r8, r10\n\t"
-                     "str r2, [r0, #-108]\n\t"
-                     "ldrd r5, r6, [r0, #-20]\n\t"                 /* the pen's colour and depth   */
-                     "str r8, [r0, #72]\n\t"
-                     "add r5, r5, r8, lsl #1\n\t"
-                     "add r12, r6, r8, lsl #1\n\t"
-                     "strd r5, r12, [r0, #-20]\n\t"
-                     EW_TANGENT
-                     "ldrd r1, r2, [r0, #-12]\n\t"                 /* its w, dw                    */
-                     "ldr r5, [r0, #64]\n\t"                       /* apart                        */
-                     "subs r5, r5, #2\n\t"
-                     EW_RUN_PIXELS
+    __asm__ volatile("5:\t" EW_ROW_HEAD("r6", "r5")
+                     "ldrb r3, [r2, #-24]\n\t"                   /* is_wide                      */
+                     "cmp r3, #0\n\t"
+                     "bne 10f\n\t" EW_NARROW_AT
+                     "20:\tldr r2, [r0, #32]\n\t"
+                     "ldrb r12, [r2, #-19]\n\t"                  /* w_lead; the pen's w, dw      */
+                     "lsr r5, r1, r12\n\t"
+                     "asr r12, r3, r12\n\t"
+                     "lsls r5, r5, #1\n\t"
+                     "lsl r12, r12, #1\n\t"
+                     "strd r5, r12, [r0, #-12]\n\t"
+                     "strd r6, r8, [r0, #80]\n\t"                /* first, pixels                */
+                     "ldrh r5, [r2, #-30]\n\t"                   /* sure_run                     */
+                     "cmp r8, r5\n\t"
+                     "bhi 21f\n"
+                     "14:\tlsr r5, r8, #1\n"
+                     "22:\t" EW_TANGENT EW_RUN_PIXELS
+                     "ldrd r2, r5, [r0, #80]\n\t"
+                     "subs r6, r6, r2\n\t"
+                     "subs r5, r5, r6, lsr #1\n\t"               /* what is left                 */
+                     "beq 7f\n\t"
+                     "lsrs r6, r6, #1\n\t"                       /* drawn                        */
                      "str r1, [r0, #-12]\n\t"
-                     "ldr r8, [r0, #72]\n\t"
-                     "sub r1, r0, #48\n\t"
-                     "ldm r1, {r3, r4, r5, r6, r9}\n\t"            /* scale, fall, longest, down, left */
-                     "subs r9, r9, r8\n\t"
-                     "str r9, [r0, #-32]\n\t"
-                     "beq 19f\n\t"
-                     "ldr r1, [r0, #-124]\n\t"                     /* the next run's, as ew_run_after */
-                     "lsrs r1, r1, #15\n\t"
-                     "muls r1, r3, r1\n\t"
-                     "lsrs r1, r6\n\t"
-                     "cmp r4, #0\n\t"
+                     "sub r1, r0, #124\n\t"
+                     "ldm r1, {r1, r3, r4, r9, r10, r11}\n\t"    /* linear                       */
+                     "ldr r8, [r0, #88]\n\t"                     /* run                          */
+                     "mla r2, r3, r6, r1\n\t"                    /* the next one's, as ew_run_after */
+                     "ldrd r12, lr, [r0, #-48]\n\t"              /* scale, fall                  */
+                     "lsrs r2, r2, #15\n\t"
+                     "mul r2, r12, r2\n\t"
+                     "ldr r12, [r0, #-36]\n\t"                   /* down                         */
+                     "lsr r2, r2, r12\n\t"
+                     "cmp lr, #0\n\t"
                      "beq 13f\n"
-                     "11:\tadd r2, r4, r8, lsl #2\n\t"
-                     "mul r2, r2, r8\n\t"
-                     "cmp r1, r2, lsl #6\n\t"
+                     "11:\tadd r12, lr, r8, lsl #2\n\t"
+                     "mul r12, r12, r8\n\t"
+                     "cmp r2, r12, lsl #6\n\t"
                      "bcs 12f\n\t"
                      "sub r8, r8, #1\n\t"
                      "b 11b\n"
-                     "13:\tcmp r8, r5\n\t"
-                     "bge 12f\n\t"
-                     "add r2, r8, #1\n\t"
-                     "mul r3, r2, r2\n\t"
-                     "cmp r1, r3, lsl #8\n\t"
-                     "bcc 12f\n\t"
-                     "mov r8, r2\n\t"
-                     "b 13b\n"
-                     "12:\tcmp r8, r9\n\t"
-                     "it ge\n\tmovge r8, r9\n\t"
-                     "bge 15b\n\t"
-                     "ldr r2, [r0, #108]\n\t"                      /* shortest                     */
+                     "12:\tcmp r8, r5\n\t"
+                     "bge 9f\n\t"
+                     "ldr r2, [r0, #32]\n\t"
+                     "ldrh r2, [r2, #-32]\n\t"                   /* shortest                     */
                      "cmp r8, r2\n\t"
-                     "bge 15b\n\t"
+                     "bge 15f\n\t"
                      "b 18f\n"
-                     "19:\tmov r8, #0\n"
-                     "18:"
+                     "13:\tldr lr, [r0, #-40]\n"                  /* longest                      */
+                     "8:\tcmp r8, lr\n\t"
+                     "bge 12f\n\t"
+                     "add r12, r8, #1\n\t"
+                     "mul r12, r12, r12\n\t"
+                     "cmp r2, r12, lsl #8\n\t"
+                     "bcc 12f\n\t"
+                     "add r8, r8, #1\n\t"
+                     "b 8b\n"
+                     "12:\tcmp r8, r5\n\t"                       /* not shorter than the one before */
+                     "blt 15f\n"
+                     "9:\tmov r8, r5\n"
+                     "15:\tldr r12, [r0, #80]\n\t"
+                     "str r8, [r0, #88]\n\t"
+                     "add r5, r6, r8, lsr #1\n\t"
+                     "add r6, r12, r6, lsl #1\n\t"
+                     "b 22b\n"
+
+                     "7:\t" EW_ROW_END
+                     "mvn r8, #1\n\t"                            /* EW_ROWS_DONE                 */
+                     "b 19f\n"
+
+                     "10:\t" EW_WIDE_AT
+                     "b 20b\n"
+
+                     "6:\t" EW_ROW_EMPTY
+                     "ldrb r1, [r2, #-24]\n\t"                   /* planes only                  */
+                     "cbnz r1, 8f\n\t"
+                     "ldm r2, {r1, r3, r4, r5, r6, r8, r9, r10, r11}\n\t"
+                     "add r1, r1, r4\n\t"
+                     "add r5, r5, r8\n\t"
+                     "add r9, r9, r11\n\t"
+                     "str r1, [r2]\n\t"
+                     "str r5, [r2, #12]\n\t"
+                     "str r9, [r2, #24]\n\t"
+                     "b 7b\n"
+                     "8:\t" EW_WIDE_STEP EW_WIDE_STEP EW_WIDE_STEP
+                     "b 7b\n"
+
+                     "21:\tldrb r5, [r2, #-24]\n\t"             /* steps_suffice                */
+                     "cbz r5, 8f\n\t"
+                     "cmp r8, #256\n\t"
+                     "bgt 17f\n\t"
+                     "sub r5, r8, #1\n\t"
+                     "mla r5, r3, r5, r1\n\t"
+                     "cmp r5, r1\n\tit gt\n\tmovgt r5, r1\n\t"
+                     "ldrb r12, [r2, #-18]\n\t"                  /* uv_bits                      */
+                     "sub r12, r12, #19\n\t"
+                     "lsl r12, r8, r12\n\t"
+                     "cmp r12, r5, asr #18\n\t"
+                     "bgt 17f\n"
+                     "8:\tldrh r5, [r2, #-34]\n\t"              /* ew_one_run_suffices: longest */
+                     "cmp r8, r5\n\t"
+                     "bgt 8f\n\t"
+                     "mla r5, r3, r8, r1\n\t"
+                     "cmp r5, r1\n\tit gt\n\tmovgt r5, r1\n\t"
+                     "cmp r5, #0\n\t"
+                     "ble 8f\n\t"
+                     "lsrs r5, r5, #15\n\t"
+                     "ldrh r12, [r2, #-40]\n\t"                  /* run_scale                    */
+                     "mul r5, r12, r5\n\t"
+                     "ldrb r12, [r2, #-26]\n\t"                  /* run_shift                    */
+                     "lsr r5, r5, r12\n\t"
+                     "mul r12, r8, r8\n\t"
+                     "cmp r5, r12, lsl #8\n\t"
+                     "bcs 14b\n"
+                     "8:\tldrb r5, [r0, #-24]\n\t"              /* first_run: is_ready          */
+                     "cmp r5, #0\n\tbeq 17f\n\t"
+                     "cmp r8, #8\n\t"
+                     "blt 17f\n\t"
+                     "ldr r5, [r0, #-72]\n\t"                    /* by                           */
+                     "rsb r12, r5, #0\n\t"
+                     "cmp r1, r12\n\t"
+                     "bls 17f\n\t"
+                     "add r1, r1, r5\n\t"
+                     "ldrd r5, r12, [r0, #-68]\n\t"
+                     "add r4, r4, r5\n\t"
+                     "add r10, r10, r12\n\t"
+                     "sub r2, r0, #124\n\t"
+                     "stm r2, {r1, r3, r4, r9, r10, r11}\n\t"    /* linear                       */
+                     "sub r5, r0, #48\n\t"
+                     "ldm r5, {r2, r5, r8, r12}\n\t"             /* scale, fall, longest, down; ew_run_near */
+                     "lsr lr, r1, #15\n\t"
+                     "mul lr, r2, lr\n\t"
+                     "lsr lr, lr, r12\n\t"
+                     "ldr r2, [r0, #-28]\n\t"                    /* first                        */
+                     "cmp r2, r8\n\tit gt\n\tmovgt r2, r8\n"
+                     "11:\tcmp r2, r8\n\t"
+                     "bge 12f\n\t"
+                     "adds r2, r2, #1\n\t"
+                     "add r12, r5, r2, lsl #2\n\t"
+                     "mul r12, r12, r2\n\t"
+                     "cmp lr, r12, lsl #6\n\t"
+                     "bcs 11b\n"
+                     "13:\tsubs r2, r2, #1\n"
+                     "12:\tadd r12, r5, r2, lsl #2\n\t"
+                     "mul r12, r12, r2\n\t"
+                     "cmp lr, r12, lsl #6\n\t"
+                     "bcc 13b\n\t"
+                     "str r2, [r0, #-28]\n\t"
+                     "ldr r8, [r0, #84]\n\t"                     /* pixels                       */
+                     "cmp r2, r8\n\t"
+                     "bge 8f\n\t"
+                     "mov r8, r2\n\t"
+                     "ldr r2, [r0, #32]\n\t"
+                     "ldrh r2, [r2, #-32]\n\t"                   /* shortest                     */
+                     "cmp r8, r2\n\t"
+                     "it lt\n\tmovlt r6, #0\n\t"
+                     "blt 18f\n"
+                     "8:\tstr r8, [r0, #88]\n\t"
+                     "b 14b\n"
+                     "18:\tstr r6, [r0, #92]\n\t"                /* drawn                        */
+                     "b 19f\n"
+                     "17:\tmov r8, #-1\n"                        /* EW_SPAN_LEFT                 */
+                     "19:"
                      : EW_RUN_OPERANDS
                      : [s] "r"(s), EW_RECIP_OPERANDS
                      : "cc", "memory");
@@ -353,6 +549,12 @@ EW_ALWAYS_INLINE void ew_edges_step(ew_edge *edge)
 }
 #undef EW_ROWS
 #undef EW_ROWS_OPERANDS
+#undef EW_ROW_HEAD
+#undef EW_ROW_EMPTY
+#undef EW_ROW_END
+#undef EW_NARROW_AT
+#undef EW_WIDE_AT
+#undef EW_WIDE_STEP
 #undef EW_TANGENT
 #undef EW_TANGENT_OF
 #undef EW_RUN_PIXELS
@@ -436,12 +638,15 @@ EW_ALWAYS_INLINE uint32_t ew_fill_pixels(ew_packing *k, uint16_t *c, uint16_t *z
     "adcs r5, r3\n\t" \
     "str r6, [r1, #20]\n\t" \
     "str r5, [r1, #8]\n\t"
-EW_ALWAYS_INLINE void ew_walk_rows(ew_rows *rows, int is_256)
+EW_ALWAYS_INLINE void ew_walk_rows(ew_rows *rows, const ew_triangle *triangle, int is_256)
 {
+    const ew_plane32 *p = triangle->plane.narrow;
     register ew_rows *s __asm__("r0") = rows;
     register uint32_t t __asm__("r1"), w __asm__("r2"), high __asm__("r3"), low __asm__("r4"), c __asm__("r5"), z __asm__("r6");
-    register uint32_t d __asm__("r7"), dw __asm__("r12") = rows->dw;
+    register uint32_t d __asm__("r7");
+    register uint32_t dw __asm__("r12") = (uint32_t)EW_ASR((int32_t)p[EW_PLANE_W].dx, triangle->w_lead) << 1;
     (void)is_256;
+    rows->dhigh = p[EW_PLANE_U].dx, rows->dlow = p[EW_PLANE_V].dx;
     __asm__ volatile(".syntax unified\n"
                      "5:\tldr r1, [r0, #28]\n\t" /* edge */
                      "ldr r2, [r1]\n\t"          /* x    */
@@ -450,15 +655,15 @@ EW_ALWAYS_INLINE void ew_walk_rows(ew_rows *rows, int is_256)
                      "ldr r5, [r0, #40]\n\t"     /* x1   */
                      "cmp r2, r4\n\tbge 6f\n\tmovs r2, r4\n"
                      "6:\tcmp r3, r5\n\tble 6f\n\tmovs r3, r5\n"
-                     "6:\tldr r4, [r0, #56]\n\t" /* depth */
-                     "ldr r5, [r0, #60]\n\t"     /* stride */
+                     "6:\tldr r4, [r0, #44]\n\t" /* depth */
+                     "ldr r5, [r0, #48]\n\t"     /* stride */
                      "lsls r6, r2, #1\n\t"
                      "adds r6, r6, r4\n\t"       /* z */
                      "adds r4, r4, r5\n\t"
-                     "str r4, [r0, #56]\n\t"
+                     "str r4, [r0, #44]\n\t"
                      "ldr r1, [r0, #32]\n\t"     /* planes */
                      "subs r3, r3, r2\n\tbgt 9f\n\tb 7f\n"
-                     "9:\tstr r3, [r0, #72]\n\t"     /* reached */
+                     "9:\t"
                      "lsls r4, r3, #1\n\t"
                      "adds r4, r4, r6\n\t"
                      "str r4, [r0, #20]\n\t"     /* rest */
@@ -466,7 +671,10 @@ EW_ALWAYS_INLINE void ew_walk_rows(ew_rows *rows, int is_256)
                      "lsls r3, r3, #3\n\t"
                      "adds r3, r3, r6\n\t"
                      "str r3, [r0, #24]\n\t"     /* end */
-                     "ldr r4, [r0, #44]\n\t"     /* column */
+                     "subs r1, #40\n\t"            /* the triangle */
+                     "ldrh r4, [r1, #12]\n\t"     /* column */
+                     "ldrb r7, [r1, #21]\n\t"     /* w_lead */
+                     "adds r1, #40\n\t"
                      "subs r2, r2, r4\n\t"
                      "mov r8, r6\n\t"
                      "ldmia r1!, {r3, r4, r5}\n\t" /* of 1/z: row, dx, dy */
@@ -474,8 +682,7 @@ EW_ALWAYS_INLINE void ew_walk_rows(ew_rows *rows, int is_256)
                      "subs r1, #12\n\t"
                      "muls r4, r2, r4\n\t"
                      "adds r3, r3, r4\n\t"
-                     "ldr r4, [r0, #48]\n\t"     /* lead */
-                     "lsrs r3, r4\n\t"
+                     "lsrs r3, r7\n\t"
                      "lsls r7, r3, #1\n\t"       /* w */
                      "stmia r1!, {r5}\n\t" EW_PACKED_STEP
                      "ldr r6, [r0, #12]\n\t"     /* dhigh */
@@ -494,16 +701,19 @@ EW_ALWAYS_INLINE void ew_walk_rows(ew_rows *rows, int is_256)
                      "adds r4, r4, r6\n\t"
                      "adcs r3, r5\n\t"
                      "mov r6, r8\n\t"
-                     "ldr r5, [r0, #64]\n\t"     /* apart */
+                     "ldr r5, [r0, #52]\n\t"     /* apart */
                      "adds r5, r5, r6\n\t"
                      "mov r2, r7\n\t" EW_PIXELS
                      "6:\tldr r1, [r0, #28]\n\t" EW_EDGES_STEP
-                     "ldr r2, [r0, #68]\n\t"     /* left */
+                     "ldr r2, [r0, #56]\n\t"     /* left */
                      "subs r2, #1\n\t"
-                     "str r2, [r0, #68]\n\t"
+                     "str r2, [r0, #56]\n\t"
                      "beq 8f\n\t"
                      "b 5b\n"
-                     "7:\tldmia r1!, {r2, r3, r4}\n\t" /* no pixel: planes only */
+                     "7:\tldr r2, [r0, #60]\n\t" /* reached: no pixel here, planes only */
+                     "subs r2, #1\n\t"
+                     "str r2, [r0, #60]\n\t"
+                     "ldmia r1!, {r2, r3, r4}\n\t"
                      "adds r2, r2, r4\n\t"
                      "subs r1, #12\n\t"
                      "stmia r1!, {r2}\n\t" EW_PACKED_STEP
@@ -531,8 +741,8 @@ EW_ALWAYS_INLINE void ew_edges_step(ew_edge *edge)
 #ifndef EW_HAS_ROW_LOOP
 #define EW_HAS_ROW_LOOP 0
 #endif
-#ifndef EW_HAS_TANGENT_LOOP
-#define EW_HAS_TANGENT_LOOP 0
+#ifndef EW_HAS_SPAN_LOOP
+#define EW_HAS_SPAN_LOOP 0
 #endif
 #ifndef EW_HAS_EDGES_STEP
 EW_ALWAYS_INLINE void ew_edges_step(ew_edge *edge)

@@ -239,9 +239,6 @@ static int is_short(const ew_triangle *t, const ew_span_work *span, int32_t m)
 EW_NOINLINE int32_t runs_of_texture(ew_packing *k, const ew_triangle *t, ew_span_work *span, int32_t m)
 {
     ew_linear *l = &span->linear;
-#if EW_HAS_TANGENT_LOOP && !EW_TRACE
-    if (span->has_rows) return ew_walk_runs(&span->fill.textured.rows, smaller(m, span->left));
-#endif
     //@ dynamic_split span->left;
     for (;;) {
         uint32_t u = l->u, du = l->du, v = l->v, dv = l->dv;
@@ -307,16 +304,21 @@ EW_NOINLINE int32_t pixels_of_texture(ew_packing *k, const ew_triangle *t, ew_sp
     return span->left ? next_run(span, n) : 0;
 }
 
-/* A piece of a span, of at most EW_LONGEST_RUN pixels. */
-EW_NOINLINE void piece_of_texture(ew_raster *raster, const ew_triangle *t, int32_t n)
+/* What is left of a piece, when a run of m pixels is next. */
+static void rest_of_piece(ew_raster *raster, const ew_triangle *t, int32_t m)
 {
     ew_packing *k = &raster->work.packing;
     ew_span_work *span = &raster->work.now.span;
-    int32_t m = first_run(span, t, n);
     //@ dynamic_split span->left;
     do {
         m = is_short(t, span, m) ? pixels_of_texture(k, t, span) : runs_of_texture(k, t, span, m);
     } while (span->left > 0);
+}
+
+/* A piece of a span, of at most EW_LONGEST_RUN pixels. */
+EW_NOINLINE void piece_of_texture(ew_raster *raster, const ew_triangle *t, int32_t n)
+{
+    rest_of_piece(raster, t, first_run(&raster->work.now.span, t, n));
 }
 
 /* ---- everything else ---- */
@@ -594,6 +596,16 @@ EW_NOINLINE int32_t next_of_wide(ew_raster *raster, const ew_triangle *t, int32_
 
 /* ---- rows ---- */
 
+#if EW_HAS_SPAN_LOOP && !EW_TRACE
+static void planes_step_back(ew_triangle *t)
+{
+    for (int i = 0; i <= 2; i++) {
+        if (t->is_wide) t->plane.wide[i].row -= t->plane.wide[i].dy;
+        else t->plane.narrow[i].row -= t->plane.narrow[i].dy;
+    }
+}
+#endif
+
 /* To the next row; shades are rare. */
 EW_ALWAYS_INLINE void planes_step(ew_triangle *t, int wide, int attributes)
 {
@@ -609,29 +621,6 @@ EW_ALWAYS_INLINE void planes_step(ew_triangle *t, int wide, int attributes)
     for (int i = EW_PLANE_SHADE; i <= attributes; i++) p[i].row += p[i].dy;
 }
 
-#if EW_HAS_TANGENT_LOOP && !EW_TRACE
-/* Makes ready for the machine code of runs, for which the table's reciprocal has to do. */
-EW_NOINLINE void runs_init(ew_raster *raster, const ew_triangle *t)
-{
-    const ew_packing *k = &raster->work.packing;
-    ew_rows *rows = &raster->work.now.span.fill.textured.rows;
-    rows->texels = k->texels;
-    rows->turn = k->turn, rows->mask = k->mask;
-    rows->apart = (uint32_t)((uintptr_t)raster->target.colour - (uintptr_t)raster->target.depth);
-    rows->recip = ew_recip_entries;
-    rows->u_shift = t->u_shift, rows->v_shift = t->v_shift;
-    rows->u_base = t->u_base, rows->v_base = t->v_base;
-    rows->low = k->low, rows->log2_height = k->log2_height;
-    rows->is_256 = k->is_256;
-    rows->shortest = t->shortest;
-    raster->work.now.span.has_rows = 1;
-}
-EW_ALWAYS_INLINE int has_quick_runs(const ew_triangle *t) { return !t->newton && !is_affine(t); }
-#else
-EW_ALWAYS_INLINE void runs_init(ew_raster *raster, const ew_triangle *t) { (void)raster, (void)t; }
-EW_ALWAYS_INLINE int has_quick_runs(const ew_triangle *t) { return (void)t, 0; }
-#endif
-
 /* A span that has to be cut, or whose runs have to be found. */
 EW_NOINLINE void span_of_texture(ew_raster *raster, const ew_triangle *t, int32_t x, int32_t y, int32_t n)
 {
@@ -639,7 +628,6 @@ EW_NOINLINE void span_of_texture(ew_raster *raster, const ew_triangle *t, int32_
     ew_pen *pen = &raster->work.now.span.fill.textured.pen;
     EW_KEEP_ORDER(l);
     pen_at(pen, raster, x, y);
-    if (has_quick_runs(t) && !raster->work.now.span.has_rows) runs_init(raster, t);
     //@ dynamic_split n;
     while (n > 0) {
         int32_t m = n;
@@ -686,11 +674,12 @@ EW_ALWAYS_INLINE void run_of_texture(ew_raster *raster, const ew_triangle *t, in
 EW_HOT int ew_rows_of_texture(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
 {
     int reached = 0;
-    raster->work.now.span.is_ready = raster->work.now.span.has_rows = 0;
+    raster->work.now.span.is_ready = 0;
     for (; row < end; row++) {
         const int32_t x = larger(edge[0].x, raster->scissor.x0), n = smaller(edge[1].x, raster->scissor.x1) - x;
         if (n > 0) {
-            if (n <= t->sure_run) run_of_texture(raster, t, x, row, n);
+            /* with machine code for runs, others are too few to pay */
+            if (!EW_HAS_SPAN_LOOP && n <= t->sure_run) run_of_texture(raster, t, x, row, n);
             else span_of_texture(raster, t, x, row, n);
             reached = 1;
         }
@@ -699,6 +688,75 @@ EW_HOT int ew_rows_of_texture(ew_raster *raster, ew_triangle *t, ew_edge *edge, 
     }
     return reached;
 }
+
+#if EW_HAS_ROW_LOOP && !EW_TRACE
+/* Makes ready for the machine code of arch.h, which then draws from `row` to below `end`. */
+EW_ALWAYS_INLINE ew_rows *rows_init(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
+{
+    ew_rows *rows = &raster->work.now.span.fill.textured.rows;
+    EW_ASSERT(row < end);
+    EW_KEEP_ORDER(rows);
+    if (!raster->work.now.span.has_rows) {
+        const ew_packing *k = &raster->work.packing;
+        const ew_target *target = &raster->target;
+        rows->texels = k->texels;
+        rows->turn = k->turn, rows->mask = k->mask;
+        rows->x0 = raster->scissor.x0, rows->x1 = raster->scissor.x1;
+        rows->stride = target->stride * 2u;
+        rows->apart = (uint32_t)((uintptr_t)target->colour - (uintptr_t)target->depth) - EW_APART_LESS;
+        rows->origin = (uintptr_t)target->depth - target->first_row * rows->stride; /* modulo 2^32 */
+        if (EW_HAS_SPAN_LOOP) {
+            rows->recip = ew_recip_entries;
+            rows->low = k->low, rows->log2_height = k->log2_height;
+            rows->is_256 = k->is_256;
+        }
+        raster->work.now.span.has_rows = 1;
+    }
+    rows->edge = edge;
+    rows->planes = t->plane.narrow; /* or wide: a union */
+    rows->depth = (uint16_t *)(rows->origin + (uint32_t)row * rows->stride);
+    rows->left = rows->reached = end - row;
+    return rows;
+}
+#endif
+
+#if EW_HAS_SPAN_LOOP && !EW_TRACE
+/* The span that machine code left for the m that it returned. Returns how many rows are left. */
+EW_NOINLINE int32_t span_left(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t end, int32_t m)
+{
+    ew_span_work *span = &raster->work.now.span;
+    ew_rows *rows = &span->fill.textured.rows;
+    if (m == EW_SPAN_LEFT) {
+        const int32_t x = larger(edge[0].x, raster->scissor.x0), n = smaller(edge[1].x, raster->scissor.x1) - x;
+        planes_step_back(t);
+        span_of_texture(raster, t, x, end - rows->left, n);
+        planes_step(t, t->is_wide, 2);
+    } else {
+        ew_pen *pen = &span->fill.textured.pen;
+        pen->depth = rows->first + rows->drawn;
+        pen->colour = (uint16_t *)(void *)((uint8_t *)pen->depth + rows->apart + EW_APART_LESS);
+        span->left = rows->pixels - (int32_t)rows->drawn;
+        advance(&span->linear, rows->drawn);
+        rest_of_piece(raster, t, m);
+    }
+    ew_edges_step(edge);
+    return --rows->left;
+}
+
+EW_HOT int ew_rows_of_runs(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
+{
+    ew_rows *rows = rows_init(raster, t, edge, row, end);
+    int32_t m;
+    raster->work.now.span.is_ready = 0;
+    while ((m = ew_walk_spans(rows)) != EW_ROWS_DONE && span_left(raster, t, edge, end, m)) continue;
+    return rows->reached;
+}
+#else
+EW_HOT int ew_rows_of_runs(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
+{
+    return ew_rows_of_texture(raster, t, edge, row, end);
+}
+#endif
 
 /* ---- rows of packed planes ---- */
 
@@ -747,26 +805,9 @@ void ew_planes_go(ew_triangle *t, uint32_t columns, uint32_t rows)
 #if EW_HAS_ROW_LOOP && !EW_TRACE
 EW_HOT int ew_rows_packed(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
 {
-    const ew_packing *k = &raster->work.packing;
-    ew_rows *rows = &raster->work.now.span.fill.textured.rows;
-    const int32_t offset = (row - raster->target.first_row) * raster->target.stride; /* 2^24 at most */
-    if (row >= end) return 0;
-    rows->edge = edge;
-    rows->planes = t->plane.narrow;
-    rows->x0 = raster->scissor.x0, rows->x1 = raster->scissor.x1;
-    rows->column = t->column;
-    rows->lead = t->w_lead;
-    rows->dw = depth_step(t->plane.narrow[EW_PLANE_W].dx, t->w_lead);
-    rows->depth = raster->target.depth + offset;
-    rows->stride = raster->target.stride * 2u;
-    rows->apart = (uint32_t)((uintptr_t)raster->target.colour - (uintptr_t)raster->target.depth);
-    rows->texels = k->texels;
-    rows->turn = k->turn, rows->mask = k->mask;
-    rows->dhigh = t->plane.narrow[EW_PLANE_U].dx, rows->dlow = t->plane.narrow[EW_PLANE_V].dx;
-    rows->left = end - row;
-    rows->reached = 0;
-    ew_walk_rows(rows, k->is_256);
-    return rows->reached != 0;
+    ew_rows *rows = rows_init(raster, t, edge, row, end);
+    ew_walk_rows(rows, t, raster->work.packing.is_256);
+    return rows->reached;
 }
 #else
 EW_HOT int ew_rows_packed(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
@@ -819,7 +860,8 @@ EW_HOT int ew_rows_of_any(ew_raster *raster, int32_t row, int32_t end)
     ew_triangle *t = &raster->work.triangle;
     ew_edge *edge = raster->work.edge;
     int reached = 0;
-    raster->work.now.span.is_ready = raster->work.now.span.has_rows = 0;
+    ew_span_work *span = &raster->work.now.span;
+    span->is_ready = span->has_rows = 0;
     for (; row < end; row++) {
         int32_t x = larger(edge[0].x, raster->scissor.x0), n = smaller(edge[1].x, raster->scissor.x1) - x;
         if (n > 0) {

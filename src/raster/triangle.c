@@ -94,7 +94,8 @@ static int set_up(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_
 /* Rows between two changes of edges of a triangle that needs no fill to be looked for. */
 EW_ALWAYS_INLINE int draw_quick(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
 {
-    return t->walk == WALK_PACKED ? ew_rows_packed(raster, t, edge, row, end) : ew_rows_of_texture(raster, t, edge, row, end);
+    if (t->walk == WALK_PACKED) return ew_rows_packed(raster, t, edge, row, end);
+    return t->walk == WALK_RUNS ? ew_rows_of_runs(raster, t, edge, row, end) : ew_rows_of_texture(raster, t, edge, row, end);
 }
 
 /* The same of work.triangle, whatever it needs. */
@@ -111,6 +112,7 @@ EW_ALWAYS_INLINE int draw_rows(ew_raster *raster, int32_t end)
     EW_KEEP_ORDER(k);
     const int32_t turn = smaller(k->turn, end);
     int reached = 0;
+    raster->work.now.span.has_rows = 0;
     start_edge(raster, k->longest, k->top, k->bottom, k->first);
     if (k->first < turn) {
         start_edge(raster, !k->longest, k->top, k->middle, k->first);
@@ -246,6 +248,7 @@ int ew_raster_draw_active(ew_raster *raster, ew_active *active)
     int32_t row = larger(active->row, raster->scissor.y0);
     int reached = 0;
     if (row >= end) return 0;
+    raster->work.now.span.has_rows = 0;
     active->row = (uint16_t)end;
     active->at.quick = quick_until(active, end);
     if (row < turn && turn < end) {
@@ -261,6 +264,7 @@ void ew_raster_draw_list(ew_raster *raster, ew_active_list *list, uint32_t numbe
     const int32_t row = raster->scissor.y0, end = raster->scissor.y1;
     const ew_active_list in = *list; /* so that it stays in registers */
     uint16_t *link = in.link;
+    raster->work.now.span.has_rows = 0;
     while (*link != EW_NO_PLACE) {
         ew_active *active = ew_active_in(&in, *link);
         if (active->number >= number) break;

@@ -23,9 +23,10 @@ enum {
  * target; where 1/z at the span's ends stays inside depth's range; or everywhere. */
 enum { PLAIN_NEVER, PLAIN_SOMETIMES, PLAIN_ALWAYS };
 
-/* How its rows are walked (span.c): by ew_rows_of_any; textured and plain, by ew_rows_of_texture; and if u, v
- * and depth are linear over the whole triangle, too, by ew_rows_packed. */
-enum { WALK_ANY, WALK_TEXTURE, WALK_PACKED };
+/* How its rows are walked (span.c): by ew_rows_of_any; textured and plain, by ew_rows_of_texture; if the table's
+ * reciprocal will do for its runs, too, by ew_rows_of_runs; if u, v and depth are linear over the whole triangle, by
+ * ew_rows_packed. */
+enum { WALK_ANY, WALK_TEXTURE, WALK_RUNS, WALK_PACKED };
 
 /* What the loop of span.c needs to know of raster->texture. */
 void ew_packing_init(ew_packing *packing, const ew_raster *raster);
@@ -40,10 +41,11 @@ void ew_planes_pack(ew_triangle *t, const ew_packing *packing);
 /* Takes planes some columns to the right and rows down. */
 void ew_planes_go(ew_triangle *t, uint32_t columns, uint32_t rows);
 
-/* Draw rows from `row` to below `end` of a triangle whose edges and planes stand on `row`, cut to
+/* Draw rows from `row` to below `end`, one at least, of a triangle whose edges and planes stand on `row`, cut to
  * the scissor in x, and step both. Return whether a pixel was reached. The last is for all
  * triangles, which must be raster->work's. */
 int ew_rows_of_texture(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end);
+int ew_rows_of_runs(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end);
 int ew_rows_packed(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end);
 int ew_rows_of_any(ew_raster *raster, int32_t row, int32_t end);
 
