@@ -17,7 +17,10 @@ typedef struct triangle_case {
     uint8_t flags, blend, filter;
     uint8_t texture_format, wrap, levels;
     uint8_t target_format;
-    uint8_t dither : 1, small : 1; /* small: many of a few pixels, in a scissor that cuts them on all sides */
+    uint8_t dither : 1;
+    uint8_t small : 1; /* many of a few pixels, in a scissor that cuts them on all sides */
+    uint8_t large : 1; /* many in a picture of 320 x 240, which reach far over its borders */
+    uint8_t dear : 1;  /* runs are: short ones are drawn pixel by pixel */
 } triangle_case;
 
 /* Most are of the picture's size and many reach over its borders; near/z over a range of 32. */
@@ -43,7 +46,7 @@ static void any_small(generator *g, ew_raster_vertex corner[3])
         any_corner(g, &corner[k]);
         corner[k].x = x + random_between(g, -8 * INT32_C(4096), 8 * INT32_C(4096));
         corner[k].y = y + random_between(g, -8 * INT32_C(4096), 8 * INT32_C(4096));
-        corner[k].w = (UINT32_C(1) << 30) + random32(g) % (UINT32_C(1) << 30);
+        corner[k].w = (UINT32_C(1) << 29) + random32(g) % (UINT32_C(1) << 29);
     }
 }
 
@@ -61,6 +64,38 @@ static int draw_small(uint16_t row)
     }
     return result < 0 || drawn < TRIANGLES ? -1 : 0;
 }
+
+#if SAME_BITS_ROOM >= 3
+/* In front of each other, as they come; a third each with u and v over few, some and many texels, of which the last
+ * need the better reciprocal. */
+static uint32_t draw_large(const ew_material *material, int dear)
+{
+    enum { COUNT = 300 };
+    static const ew_cost dear_runs = { 100, 15, 600 };
+    const ew_target target = { .colour = same_picture.colour, .depth = same_picture.depth, .width = 320, .height = 240,
+                               .stride = 320 };
+    generator g = { 362436069u };
+    int drawn = 0, result = ew_raster_init(&same_raster, &target);
+    if (!result) result = ew_raster_set_material(&same_raster, material);
+    if (!result && dear) result = ew_raster_set_cost(&same_raster, &dear_runs);
+    ew_raster_clear(&same_raster, 0x18E3);
+    for (int i = 0; i < COUNT && result >= 0; i++) {
+        ew_raster_vertex corner[3];
+        for (int k = 0; k < 3; k++) {
+            any_corner(&g, &corner[k]);
+            corner[k].x = random_between(&g, -200 * INT32_C(4096), 520 * INT32_C(4096));
+            corner[k].y = random_between(&g, -100 * INT32_C(4096), 340 * INT32_C(4096));
+            corner[k].w >>= 1; /* depth stays inside its range, as special loops want it */
+            corner[k].u *= i % 3 == 2 ? 16 : 1 + i % 3 * 5;
+            corner[k].v *= i % 3 == 2 ? 16 : 1 + i % 3 * 5;
+        }
+        result = ew_raster_triangle(&same_raster, &corner[0], &corner[1], &corner[2]);
+        drawn += result > 0;
+    }
+    if (result < 0 || drawn < COUNT / 4) print_failure("large triangles", ew_error_text(result));
+    return picture_hash(picture_hash(PICTURE_HASH_START, same_picture.colour, 320 * 240), same_picture.depth, 320 * 240);
+}
+#endif
 
 static uint32_t draw(const ew_target *picture, const ew_material *material, int small)
 {
@@ -137,7 +172,17 @@ static const triangle_case cases[] = {
     { "auto", .tolerance = 4, .small = 1 },
     { "affine", .rung = EW_RUNG_AFFINE, .small = 1 },
     { "exact", .rung = EW_RUNG_EXACT, .small = 1 },
+    { "runs", .rung = EW_RUNG_RUNS, .tolerance = 4, .small = 1 },
     { "shaded", .tolerance = 4, .flags = EW_SHADED, .small = 1 },
+#endif
+#if SAME_BITS_ROOM >= 3
+    { "auto", .tolerance = 1, .large = 1 },
+    { "auto", .tolerance = 4, .large = 1 },
+    { "auto", .tolerance = 32, .large = 1 },
+    { "dear-runs", .tolerance = 4, .large = 1, .dear = 1 },
+    { "runs", .rung = EW_RUNG_RUNS, .tolerance = 16, .large = 1 },
+    { "runs16", .rung = EW_RUNG_RUNS_16, .large = 1 },
+    { "affine", .rung = EW_RUNG_AFFINE, .large = 1 },
 #endif
 };
 
@@ -158,6 +203,12 @@ void triangle_bits(void)
                                        .tolerance = c->tolerance, .rung = c->rung,
                                        .flags = EW_DOUBLE_SIDED | c->flags,
                                        .blend = c->blend, .filter = c->filter };
+#if SAME_BITS_ROOM >= 3
+        if (c->large) {
+            print_hash("large", c->method, c->tolerance, "320x240", draw_large(&material, c->dear));
+            continue;
+        }
+#endif
         print_hash(c->small ? "small" : "triangles", c->method, c->tolerance, "64x48", draw(&target, &material, c->small));
     }
 }
