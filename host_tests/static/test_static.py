@@ -45,7 +45,7 @@ class Hot(unittest.TestCase):
 
     DEFINES = ['-DEW_HOT=__attribute__((section(".ew_hot")))', '-DEW_HOT_TABLE=__attribute__((section(".ew_hot_table")))']
     # all rows of triangles go through the first two, clears through the last
-    ROOTS = ("ew_rows_of_texture", "ew_rows_of_any", "ew_raster_fill")
+    ROOTS = ("ew_rows_of_texture", "ew_rows_of_runs", "ew_rows_packed", "ew_rows_of_any", "ew_raster_fill")
     TABLES = {"ew_recip_entries", "layouts", "bayer"}
 
     def sections(self, target, objects):
