@@ -315,7 +315,7 @@ static void rest_of_piece(ew_raster *raster, const ew_triangle *t, int32_t m)
     } while (span->left > 0);
 }
 
-/* A piece of a span, of at most EW_LONGEST_RUN pixels. */
+/* A piece of a span, of at most EW_LONGEST_PIECE pixels. */
 EW_NOINLINE void piece_of_texture(ew_raster *raster, const ew_triangle *t, int32_t n)
 {
     rest_of_piece(raster, t, first_run(&raster->work.now.span, t, n));
@@ -476,7 +476,7 @@ EW_ALWAYS_INLINE int is_plain(const ew_triangle *t, uint32_t w, uint32_t dw, int
     return t->plain != PLAIN_SOMETIMES ? t->plain : stays_in_range(w, dw, n);
 }
 
-/* Makes ready for a piece of a span, of n <= EW_LONGEST_RUN pixels from (x, y) on, that
+/* Makes ready for a piece of a span, of n <= EW_LONGEST_PIECE pixels from (x, y) on, that
  * work.linear describes. Returns whether piece_of_texture may draw it. */
 EW_NOINLINE int start_piece(ew_raster *raster, int32_t x, int32_t y, int32_t n)
 {
@@ -532,13 +532,20 @@ static int alignment(uint64_t w, uint64_t end, uint32_t *least)
     return up;
 }
 
+/* Up to how many pixels a piece of a span with attributes may have; on the affine rung it is one run. */
+EW_ALWAYS_INLINE int32_t longest_piece(const ew_triangle *t)
+{
+    return t->rung == EW_RUNG_AFFINE ? EW_LONGEST_RUN : EW_LONGEST_PIECE;
+}
+
 /* Whether 32-bit steps keep attributes within 1/256 texel over n pixels: n 2^bits <= 2 w' at
  * both ends; affine, where w' does not matter: n 2^bits <= 2^32, 1/128 texel (docs/error-bound.md). */
 EW_ALWAYS_INLINE int steps_suffice(const ew_triangle *t, uint32_t w, uint32_t last, int32_t n)
 {
     int32_t least = smaller((int32_t)w, (int32_t)last); /* rounding may take it below 0 */
     if (t->rung == EW_RUNG_AFFINE) least = INT32_MAX;
-    return n <= EW_LONGEST_RUN && n * ((int32_t)1 << (t->uv_bits - EW_BITS_LEAST)) <= EW_ASR(least, EW_BITS_LEAST - 1); /* 2^8 2^8 */
+    return n <= longest_piece(t) &&
+           n * ((int32_t)1 << (t->uv_bits - EW_BITS_LEAST)) <= EW_ASR(least, EW_BITS_LEAST - 1); /* 2^9 2^8 */
 }
 
 /* The same for wide triangles, unaligned. */
@@ -558,8 +565,8 @@ static int32_t piece_length(const ew_triangle *t, uint64_t w, int32_t n, int *al
 {
     uint32_t least = 0;
     *align = 0;
-    n = smaller(n, EW_LONGEST_RUN);
-    if (t->attributes == 0) return n;
+    if (t->attributes == 0) return smaller(n, EW_LONGEST_RUN);
+    n = smaller(n, longest_piece(t));
     for (;; n = (n + 1) >> 1) {
         if (t->rung != EW_RUNG_AFFINE) *align = alignment(w, w + ew_wrap_mul64(t->plane.wide[EW_PLANE_W].dx, n - 1), &least);
         if (n == 1 || steps_suffice(t, least, least, n)) return n;

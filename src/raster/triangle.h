@@ -15,7 +15,8 @@
 enum {
     EW_BITS_LEAST = 19, EW_BITS_MOST = 27, /* of attribute differences: 128 to 32,768 texels */
     EW_SHADE_BITS = 21,                    /* a shade's: 256 units of 1                      */
-    EW_LONGEST_RUN = 256
+    EW_LONGEST_RUN = 256,
+    EW_LONGEST_PIECE = 512 /* of a span, run after run: depth's steps lose 1/32 unit over it */
 };
 #define EW_FRACTION(bits) (39 - (bits))
 
