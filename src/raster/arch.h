@@ -379,9 +379,9 @@ EW_ALWAYS_INLINE void ew_walk_rows(ew_rows *rows, const ew_triangle *triangle, i
     "adcs r3, r5\n\t" \
     "strd r1, r3, [r2], #24\n\t"
 
-/* What ew_walk_spans returns at the end of the last row; for a span that it leaves to span.c; or, 0 or above, what
- * runs_of_texture does. */
-enum { EW_ROWS_DONE = -2, EW_SPAN_LEFT = -1 };
+/* What ew_walk_spans returns: behind the last row; for a span that has to be cut; for one whose first run is to be
+ * found by first_run; or, 0 or above, what runs_of_texture does. */
+enum { EW_ROWS_DONE = -3, EW_SPAN_CUT = -2, EW_SPAN_FIRST = -1 };
 
 #define EW_HAS_SPAN_LOOP 1
 /* Rows of a triangle whose runs the table's reciprocal does for, as the twin of ew_rows_of_texture (span.c) draws
@@ -458,7 +458,7 @@ EW_ALWAYS_INLINE int32_t ew_walk_spans(ew_rows *rows)
                      "b 22b\n"
 
                      "7:\t" EW_ROW_END
-                     "mvn r8, #1\n\t"                            /* EW_ROWS_DONE                 */
+                     "mvn r8, #2\n\t"                            /* EW_ROWS_DONE                 */
                      "b 19f\n"
 
                      "10:\t" EW_WIDE_AT
@@ -506,14 +506,18 @@ EW_ALWAYS_INLINE int32_t ew_walk_spans(ew_rows *rows)
                      "cmp r5, r12, lsl #8\n\t"
                      "bcs 14b\n"
                      "8:\tldrb r5, [r0, #-24]\n\t"              /* first_run: is_ready          */
-                     "cmp r5, #0\n\tbeq 17f\n\t"
+                     "cbz r5, 8f\n\t"
                      "cmp r8, #8\n\t"
-                     "blt 17f\n\t"
+                     "blt 8f\n\t"
                      "ldr r5, [r0, #-72]\n\t"                    /* by                           */
                      "rsb r12, r5, #0\n\t"
                      "cmp r1, r12\n\t"
-                     "bls 17f\n\t"
-                     "add r1, r1, r5\n\t"
+                     "bhi 9f\n"
+                     "8:\tsub r2, r0, #124\n\t"
+                     "stm r2, {r1, r3, r4, r9, r10, r11}\n\t"    /* linear                       */
+                     "mov r8, #-1\n\t"                           /* EW_SPAN_FIRST                */
+                     "b 19f\n"
+                     "9:\tadd r1, r1, r5\n\t"
                      "ldrd r5, r12, [r0, #-68]\n\t"
                      "add r4, r4, r5\n\t"
                      "add r10, r10, r12\n\t"
@@ -552,7 +556,7 @@ EW_ALWAYS_INLINE int32_t ew_walk_spans(ew_rows *rows)
                      "b 14b\n"
                      "18:\tstr r6, [r0, #92]\n\t"                /* drawn                        */
                      "b 19f\n"
-                     "17:\tmov r8, #-1\n"                        /* EW_SPAN_LEFT                 */
+                     "17:\tmvn r8, #1\n"                         /* EW_SPAN_CUT                  */
                      "19:"
                      : EW_RUN_OPERANDS
                      : [s] "r"(s), EW_RECIP_OPERANDS

@@ -365,7 +365,7 @@ static void runs_init(ew_triangle *t, const ew_raster *raster, uint32_t w_min, u
     const int zeros = dw ? ew_clz64(dw) : 0;
     run_scale_init(t, (uint32_t)((dw << zeros) >> 32), zeros, raster->material.tolerance);
     t->sure_run = sure_run_of(t, dw, w_min);
-    if (t->walk == WALK_TEXTURE && !t->newton && t->rung != EW_RUNG_TABLE) t->walk = WALK_RUNS;
+    if (t->walk == WALK_TEXTURE && !t->newton && t->rung != EW_RUNG_TABLE && t->run_scale > 0) t->walk = WALK_RUNS;
 }
 
 /* ---- attributes ---- */

@@ -163,7 +163,10 @@ EW_ALWAYS_INLINE void advance(ew_linear *l, uint32_t n)
     l->v += l->dv * n;
 }
 
-enum { LEAST_MOVED = 8 };
+/* px, and 1/16 px: what lies up to 1 px outside of the first is within the range of numbers. */
+enum { LEAST_MOVED = 8, MOST_MOVED_BY = 16 };
+
+static int may_move(const ew_triangle *t) { return t->run_tolerance > 0 && t->run_tolerance <= MOST_MOVED_BY; }
 
 /* d t, for t in 1/16 px. */
 static uint32_t in_tolerance(uint32_t d, uint32_t tolerance)
@@ -176,12 +179,11 @@ static uint32_t in_tolerance(uint32_t d, uint32_t tolerance)
  * pixels; otherwise *by is 0. */
 EW_NOINLINE int move_init(ew_move *by, const ew_triangle *t, const ew_linear *l, int32_t n)
 {
-    enum { MOST = 16 }; /* what lies up to 1 px outside of LEAST_MOVED is within the range of numbers */
     const uint32_t tolerance = t->run_tolerance;
     const uint32_t sign = (int32_t)l->dw < 0 ? UINT32_MAX : 1u;
     const uint32_t fall = in_tolerance(l->dw * sign, tolerance);
     by->w = by->u = by->v = by->shade[0] = by->shade[1] = by->shade[2] = 0;
-    if (n < LEAST_MOVED || tolerance == 0 || tolerance > MOST || l->w <= fall) return 0;
+    if (n < LEAST_MOVED || !may_move(t) || l->w <= fall) return 0;
     by->w = 0u - fall;
     by->u = 0u - in_tolerance(l->du, tolerance) * sign;
     by->v = 0u - in_tolerance(l->dv, tolerance) * sign;
@@ -208,7 +210,7 @@ static void make_ready(ew_span_work *span, const ew_triangle *t, int32_t n)
     const ew_linear *l = &span->linear;
     const int moved = move_init(&span->by, t, l, n);
     ew_run_limit_init(&span->limit, t, l->dw, l->align, moved);
-    span->is_ready = moved && l->align == 0;
+    span->is_ready = l->align == 0 && (moved || !may_move(t));
     span->first = ew_run_first(&span->limit, l->w);
 }
 
@@ -733,17 +735,23 @@ EW_NOINLINE int32_t span_left(ew_raster *raster, ew_triangle *t, ew_edge *edge, 
 {
     ew_span_work *span = &raster->work.now.span;
     ew_rows *rows = &span->fill.textured.rows;
-    if (m == EW_SPAN_LEFT) {
+    if (m == EW_SPAN_CUT) {
         const int32_t x = larger(edge[0].x, raster->scissor.x0), n = smaller(edge[1].x, raster->scissor.x1) - x;
         planes_step_back(t);
         span_of_texture(raster, t, x, end - rows->left, n);
         planes_step(t, t->is_wide, 2);
     } else {
         ew_pen *pen = &span->fill.textured.pen;
-        pen->depth = rows->first + rows->drawn;
+        pen->depth = rows->first;
+        if (m == EW_SPAN_FIRST) {
+            span->linear.align = 0;
+            m = first_run(span, t, rows->pixels);
+        } else {
+            pen->depth += rows->drawn;
+            span->left = rows->pixels - (int32_t)rows->drawn;
+            advance(&span->linear, rows->drawn);
+        }
         pen->colour = (uint16_t *)(void *)((uint8_t *)pen->depth + rows->apart + EW_APART_LESS);
-        span->left = rows->pixels - (int32_t)rows->drawn;
-        advance(&span->linear, rows->drawn);
         rest_of_piece(raster, t, m);
     }
     ew_edges_step(edge);
