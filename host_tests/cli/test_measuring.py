@@ -99,12 +99,12 @@ class Assembled(unittest.TestCase):
 
 class Callgrind(unittest.TestCase):
     def test_libc_and_repeated_costs_are_left_out(self):
-        text = ("events: Ir\nob=(1) /x/bench-host\nfn=(1) draw\n10 100\n+1 20\ncob=(2) /lib/libc.so.6\ncfn=(2) memset\ncalls=3 0\n"
-                "12 900\n13 5\nob=(2)\nfn=(2)\n0 900\nob=(1)\nfn=(3) end\n* 1\ntotals: 1026\n")
+        text = ("events: Ir\nob=(1) /x/bench-host\nfl=(1) a.c\nfn=(1) draw\n10 100\nfi=(2) b.h\n+1 20\ncob=(2) /lib/libc.so.6\ncfn=(2) memset\n"
+                "calls=3 0\n12 900\nfe=(1)\n13 5\nob=(2)\nfn=(2)\n0 900\nob=(1)\nfn=(3) end\n* 1\ntotals: 1026\n")
         with tempfile.NamedTemporaryFile("w", suffix=".out") as f:
             f.write(text)
             f.flush()
-            self.assertEqual(count.outside_libc(f.name), 126)
+            self.assertEqual(count.outside_libc(f.name), {("a.c", "draw"): 125, ("a.c", "end"): 1})
 
 
 class Baseline(unittest.TestCase):
