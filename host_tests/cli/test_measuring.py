@@ -3,42 +3,27 @@ loops, the baseline's verdicts, the automatic choice against the cheapest."""
 import contextlib
 import io
 import os
-import pathlib
-import shutil
-import subprocess
-import sys
 import tempfile
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "tools" / "cycles"), str(ROOT / "tools" / "report")]
-
-import atlas  # noqa: E402
-import baseline  # noqa: E402
-import charts  # noqa: E402
-import count  # noqa: E402
-import memory  # noqa: E402
-import model  # noqa: E402
-import report  # noqa: E402
-import tables  # noqa: E402
-import visibility  # noqa: E402
-import work  # noqa: E402
+import assembled  # the folders of the tools are on the path from here on
+import atlas
+import baseline
+import charts
+import count
+import memory
+import model
+import report
+import tables
+import visibility
+import work
 
 
 class Assembled(unittest.TestCase):
     """Programs of a few lines, assembled for real, with executed blocks given by hand."""
 
     def assemble(self, target, source):
-        prefix = count.tools_prefix(target)
-        if not shutil.which(prefix + "as"):
-            self.skipTest(f"{prefix}as is not installed")
-        options = {"m0plus": ["-mcpu=cortex-m0plus", "-mthumb"], "m3": ["-mcpu=cortex-m3", "-mthumb"],
-                   "m4": ["-mcpu=cortex-m4", "-mthumb"], "m33": ["-mcpu=cortex-m33", "-mthumb"], "rv32imc": ["-march=rv32imc"]}[target]
-        head = "" if target == "rv32imc" else ".syntax unified\n.thumb\n"
-        with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "a.o")
-            subprocess.run([prefix + "as", *options, "-o", path, "-"], input=f"{head}.text\n{source}\n", text=True, check=True)
-            made = model.Model(target, prefix + "objdump", path)
+        made = assembled.assemble(self, target, source)
         made.at = sorted(made.code)
         return made
 
@@ -150,7 +135,7 @@ class Tables(unittest.TestCase):
         auto = [{**self.row("auto m3", "0", 106, 0, 0), **dict.fromkeys(tables.AUTO_COLUMNS, "x"), "state": "over", "scene": "D"}]
         judged = {8: [{"scene": "B", "method": "auto host", "tolerance_px": "1", "disp_max_px": "2", "bound_px": "1"}]}
         with contextlib.redirect_stdout(io.StringIO()) as said:
-            report.say("out", [], judged, auto)
+            report.say("out", [], judged, auto, [])
         self.assertIn("beyond its bound: table of 8 bits, scene B, auto host 1: 2 px, bound 1 px", said.getvalue())
         self.assertIn("auto is dearer: x, table of x bits, scene D", said.getvalue())
 

@@ -30,7 +30,7 @@ STAGES = [(re.compile(pattern), stage) for pattern, stage in [
     (r"(^|/)src/raster/(span|loops|fill|texture|target)\.c:", "rows"),
     (r"(^|/)fixed/(arithmetic|recip)\.c:", "products"),
     # of the compiler's library: products, quotients, shifts, leading zeros
-    (r":__[a-z_]*(mul|div|mod|clz|lsl|lsr|asr|shl|shr)\w*$", "products"),
+    (r":[._]\w*(mul|div|mod|clz|lsl|lsr|asr|shl|shr)\w*$", "products"),
     (r":(memcpy|memset|memmove|__aeabi_mem(cpy|set|clr|move)[48]?)$", "copies")]]
 AUTO, SHOWN = "auto", "0.25"
 COLUMNS = ["target", "scene", "method", "tolerance", "stage", "instructions", "instr_per_px"]
