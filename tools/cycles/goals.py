@@ -116,13 +116,6 @@ def say(rows):
           (f", {states.count('na')} not counted" if "na" in states else ""))
 
 
-def write(path, rows):
-    with open(path, "w", newline="", encoding="utf-8") as f:
-        out = csv.DictWriter(f, COLUMNS, extrasaction="ignore", lineterminator="\n")
-        out.writeheader()
-        out.writerows(rows)
-
-
 def main():
     parser = count.arguments("Holds counts and sizes against what is aimed at.")
     for name in ("--goals", "--sizes", "--csv", "--where"):
@@ -131,9 +124,9 @@ def main():
     read(args.goals)  # what is wrong with it is said before the images run
     cases = count.list_cases(args.build)
     counts = {target: count.count(args.build, args.bits, target, cases) for target in args.targets}
-    where.write(args.where, [row for target, of in counts.items() for row in where.rows_of(target, cases, of)])
+    where.write(args.where, where.COLUMNS, [row for target, of in counts.items() for row in where.rows_of(target, cases, of)])
     rows = list(rows_of(args.goals, cases, counts, read_sizes(args.sizes)))
-    write(args.csv, rows)
+    where.write(args.csv, COLUMNS, rows)
     say(rows)
 
 

@@ -73,9 +73,9 @@ def rows_of(target, cases, counts):
                        "fragments": case.fragments}
 
 
-def write(path, rows):
+def write(path, columns, rows):
     with open(path, "w", newline="", encoding="utf-8") as f:
-        out = csv.DictWriter(f, COLUMNS, extrasaction="ignore", lineterminator="\n")
+        out = csv.DictWriter(f, columns, extrasaction="ignore", lineterminator="\n")
         out.writeheader()
         out.writerows(rows)
 
@@ -106,7 +106,7 @@ def main():
     for target in args.targets:
         rows += rows_of(target, cases, count.count(args.build, args.bits, target, cases))
     if args.csv:
-        write(args.csv, rows)
+        write(args.csv, COLUMNS, rows)
     print_table(rows)
 
 

@@ -7,7 +7,7 @@ import work
 
 COLOURS = {"scene": "#8d6e63", "vertices": "#7b3fa0", "culling": "#5c6bc0", "placing": "#1b6ca8", "set-up": "#0a9396",
            "edges": "#9e9d24", "rows": "#d98a00", "pixels": "#2a9d4a", "products": "#c8102e", "copies": "#555555"}
-BAR, AROUND = 17, 130  # px of the chart's height
+BAR, AROUND = 22, 230  # px of the chart's height
 CHART = "aims-stages"
 
 
@@ -40,7 +40,7 @@ def draw(folder, rows):
             plots.append(f"$a{i} using 1:3:1:2:($3 - 0.4):($3 + 0.4) with boxxyerror fs solid 1 noborder lc rgb '{COLOURS[stage]}' title '{stage}'")
     script += ["$sums << EOD", *(f"{sum(of.values()):.6g} {at[key]:.6g} {sum(of.values()):.1f}" for key, of in pictures.items()), "EOD"]
     plots.append("$sums using 1:2:3 with labels left offset 0.4,0 notitle")
-    script += ["set grid x lt 1 lc rgb '#e4e4e4'", "set key below samplen 1.5", "set border 3", "set tics nomirror", "set bmargin 7",
+    script += ["set grid x lt 1 lc rgb '#e4e4e4'", "set key below samplen 1.5", "set border 3", "set tics nomirror", "set bmargin 9",
                f"set yrange [{max(at.values()) + 1:.6g}:0]", f"set xrange [0:{1.1 * max(sum(of.values()) for of in pictures.values()):.6g}]",
                "set ytics ({})".format(", ".join(f"'{' '.join(key)}' {y:.6g}" for key, y in at.items())),
                f"set title 'where the instructions go, {where.SHOWN} px'", "set xlabel 'instructions per fragment'"]
@@ -49,8 +49,10 @@ def draw(folder, rows):
     return [(CHART, "Instructions per fragment by stage. On the host pixels are part of rows.")]
 
 
-def short(row):
-    return f"{float(row['reached']):,.0f}" if row["unit"] == goals.BYTES else f"{float(row['reached']):.1f}"
+def short(row, column):
+    if row[column] == "na":
+        return "na"
+    return f"{float(row[column]):,.0f} bytes" if row["unit"] == goals.BYTES else f"{float(row[column]):.4g}"
 
 
 def name(row):
@@ -60,16 +62,15 @@ def name(row):
 
 def section(rows, names, table, charts_of):
     """The page's section; rows: of goals.csv."""
-    units = {goals.INSTRUCTIONS: "instructions per fragment", goals.BYTES: "bytes of text, -O2"}
     lines = []
     for row in rows:
         met = {"met": "<td>met</td>", "missed": "<td class='over'>missed</td>", "na": "<td>na</td>"}[row["state"]]
         most = ", ".join(f"{stage} {n:.1f}" for stage, n, _ in goals.shares(row)[:3]) if row["picture"] else ""
-        lines.append([name(row), units[row["unit"]], f"{float(row['goal']):,.0f}", "na" if row["reached"] == "na" else short(row), met, most, row["notes"]])
+        lines.append([name(row), short(row, "goal"), short(row, "reached"), met, most, row["notes"]])
     stages = "; ".join(f"<b>{stage}</b>: {purpose}" for stage, purpose in where.PURPOSES.items())
-    return f"""<p>What this project has set itself, and how far it is. Where instructions are what is counted, the three stages of the work
-that take most of them; all are in <a href="where.csv">where.csv</a>, the aims in <a href="goals.csv">goals.csv</a>.</p>
-{table(["", "unit", "aim", "reached", "", "most in", "the aim"], lines)}
-<div class="grid">{charts_of(names)}</div>
+    return f"""<p>What this project has set itself, and how far it is: instructions per fragment, with the three stages of the work that
+take most of them, and bytes of text at -O2. All stages are in <a href="where.csv">where.csv</a>, the aims in <a href="goals.csv">goals.csv</a>.</p>
+{table(["", "aim", "reached", "", "most in", "notes"], lines)}
+<div class="single">{charts_of(names)}</div>
 <p class="soft">{stages}. A function belongs to a stage with all that the compiler put into it; pixel loops are told from the rest of
 their function by the machine code.</p>"""

@@ -35,6 +35,7 @@ h1 { font-size: 1.9rem; line-height: 1.2; margin: 32px 0 8px; } h2 { margin: 48p
 p, li { max-width: 75ch; } .soft, figcaption { color: var(--soft); font-size: 0.9rem; } code { font-size: 0.9em; }
 nav { margin-bottom: 16px; } nav a { margin-right: 14px; white-space: nowrap; }
 .grid { display: grid; gap: 12px; grid-template-columns: repeat(auto-fill, minmax(min(100%, 400px), 1fr)); }
+.single { max-width: 760px; }
 .pictures { grid-template-columns: repeat(auto-fill, minmax(min(100%, 240px), 1fr)); }
 figure { margin: 0; } img { width: 100%; height: auto; display: block; border: 1px solid var(--line); background: #fff; }
 .pictures img { image-rendering: pixelated; }
