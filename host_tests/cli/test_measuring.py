@@ -3,42 +3,27 @@ loops, the baseline's verdicts, the automatic choice against the cheapest."""
 import contextlib
 import io
 import os
-import pathlib
-import shutil
-import subprocess
-import sys
 import tempfile
 import unittest
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "tools" / "cycles"), str(ROOT / "tools" / "report")]
-
-import atlas  # noqa: E402
-import baseline  # noqa: E402
-import charts  # noqa: E402
-import count  # noqa: E402
-import memory  # noqa: E402
-import model  # noqa: E402
-import report  # noqa: E402
-import tables  # noqa: E402
-import visibility  # noqa: E402
-import work  # noqa: E402
+import assembled  # the folders of the tools are on the path from here on
+import atlas
+import baseline
+import charts
+import count
+import memory
+import model
+import report
+import tables
+import visibility
+import work
 
 
 class Assembled(unittest.TestCase):
     """Programs of a few lines, assembled for real, with executed blocks given by hand."""
 
     def assemble(self, target, source):
-        prefix = count.tools_prefix(target)
-        if not shutil.which(prefix + "as"):
-            self.skipTest(f"{prefix}as is not installed")
-        options = {"m0plus": ["-mcpu=cortex-m0plus", "-mthumb"], "m3": ["-mcpu=cortex-m3", "-mthumb"],
-                   "m4": ["-mcpu=cortex-m4", "-mthumb"], "m33": ["-mcpu=cortex-m33", "-mthumb"], "rv32imc": ["-march=rv32imc"]}[target]
-        head = "" if target == "rv32imc" else ".syntax unified\n.thumb\n"
-        with tempfile.TemporaryDirectory() as folder:
-            path = os.path.join(folder, "a.o")
-            subprocess.run([prefix + "as", *options, "-o", path, "-"], input=f"{head}.text\n{source}\n", text=True, check=True)
-            made = model.Model(target, prefix + "objdump", path)
+        made = assembled.assemble(self, target, source)
         made.at = sorted(made.code)
         return made
 
@@ -99,12 +84,12 @@ class Assembled(unittest.TestCase):
 
 class Callgrind(unittest.TestCase):
     def test_libc_and_repeated_costs_are_left_out(self):
-        text = ("events: Ir\nob=(1) /x/bench-host\nfn=(1) draw\n10 100\n+1 20\ncob=(2) /lib/libc.so.6\ncfn=(2) memset\ncalls=3 0\n"
-                "12 900\n13 5\nob=(2)\nfn=(2)\n0 900\nob=(1)\nfn=(3) end\n* 1\ntotals: 1026\n")
+        text = ("events: Ir\nob=(1) /x/bench-host\nfl=(1) a.c\nfn=(1) draw\n10 100\nfi=(2) b.h\n+1 20\ncob=(2) /lib/libc.so.6\ncfn=(2) memset\n"
+                "calls=3 0\n12 900\nfe=(1)\n13 5\nob=(2)\nfn=(2)\n0 900\nob=(1)\nfn=(3) end\n* 1\ntotals: 1026\n")
         with tempfile.NamedTemporaryFile("w", suffix=".out") as f:
             f.write(text)
             f.flush()
-            self.assertEqual(count.outside_libc(f.name), 126)
+            self.assertEqual(count.outside_libc(f.name), {("a.c", "draw"): 125, ("a.c", "end"): 1})
 
 
 class Baseline(unittest.TestCase):
@@ -150,7 +135,7 @@ class Tables(unittest.TestCase):
         auto = [{**self.row("auto m3", "0", 106, 0, 0), **dict.fromkeys(tables.AUTO_COLUMNS, "x"), "state": "over", "scene": "D"}]
         judged = {8: [{"scene": "B", "method": "auto host", "tolerance_px": "1", "disp_max_px": "2", "bound_px": "1"}]}
         with contextlib.redirect_stdout(io.StringIO()) as said:
-            report.say("out", [], judged, auto)
+            report.say("out", [], judged, auto, [])
         self.assertIn("beyond its bound: table of 8 bits, scene B, auto host 1: 2 px, bound 1 px", said.getvalue())
         self.assertIn("auto is dearer: x, table of x bits, scene D", said.getvalue())
 

@@ -8,7 +8,9 @@ usage: count.py --build DIR [--bits B] [--csv FILE] TARGET ...   (host, m0plus, 
 Counts repeat exactly for the same compiler. Host counts leave libc out and have no cycles.
 """
 import argparse
+import bisect
 import csv
+import functools
 import glob
 import os
 import re
@@ -17,6 +19,7 @@ import sys
 from collections import namedtuple
 
 import model
+import pixels
 
 ARM = ["qemu-system-arm", "-M"]
 RISCV = ["qemu-system-riscv32", "-M", "virt", "-m", "32M", "-bios", "none"]
@@ -30,8 +33,11 @@ PROFILES = {"host": "host", "m0plus": "m0plus", "m3": "m3", "m4": "m3", "m33": "
 # One picture: what was drawn and by which method (tolerance in px, a string), the fragments of the scene.
 Case = namedtuple("Case", "scene method tolerance fragments")
 # What was counted of it: instructions, (low, typical, high) cycles or None, the picture's hash, and of
-# pictures in bands a Memory.
-Count = namedtuple("Count", "instructions cycles picture memory")
+# pictures in bands a Memory; and {Place: instructions}.
+Count = namedtuple("Count", "instructions cycles picture memory places")
+# Where an instruction lies: in a function of the linker's, whatever is inlined there, with its source file or ''; and
+# whether in a pixel loop (pixels.py), None on the host.
+Place = namedtuple("Place", "file function in_pixels")
 Memory = namedtuple("Memory", "bytes objects_bytes active set_up again transformed triangles vertices")
 MODES = {"at-once": 240, "bands-32": 32, "bands-16": 16, "bands-8": 8, "bands-4": 4, "line": 1, "spans": 1}  # rows of a band
 
@@ -73,27 +79,54 @@ def cases_of(target, cases):
     return [case for case in cases if not case.method.startswith("auto ") or case.method == f"auto {PROFILES.get(target)}"]
 
 
+def text_symbols(nm, image):
+    """[(address, source file or '', function)] by address."""
+    found = []
+    for line in run([nm, "-n", "-l", image]).splitlines():
+        symbol, _, place = line.partition("\t")
+        words = symbol.split()
+        if len(words) == 3 and words[1] in "tTwW":
+            found.append((int(words[0], 16), place.rpartition(":")[0], words[2]))
+    return found
+
+
 # ---- host ----
 
 def outside_libc(path):
-    """Instructions of a callgrind file that are not libc's: cost lines by the object they stand under."""
-    total, skip, names, inside = 0, False, {}, False
+    """{(source file, function): instructions} of a callgrind file, without libc's: cost lines by what they stand under."""
+    found, skip, names, here = {}, False, {}, {"fl": ""}
     with open(path, encoding="utf-8") as lines:
         for line in lines:
-            named = re.match(r"ob=\((\d+)\)(?: (.*))?", line)
+            named = re.match(r"(c?)(ob|fl|fi|fe|fn)=\((\d+)\)(?: (.*))?", line)
             if named:
-                if named[2]:
-                    names[named[1]] = named[2]
-                inside = "libc.so" not in names[named[1]]
-            elif (called := re.match(r"cob=\((\d+)\) (.*)", line)):
-                names[called[1]] = called[2]
+                called, kind, number, name = named.groups()
+                kind = "fl" if kind in ("fi", "fe") else kind  # the files share their numbers
+                if name:
+                    names[kind, number] = name
+                if not called:
+                    here[kind] = names[kind, number]
+                if line.startswith("fn="):  # what is inlined from other files belongs to it, too
+                    function = here["fl"], here["fn"]
             elif line.startswith("calls="):
                 skip = True  # the next line repeats what the called function costs
             elif re.match(r"[+\-*\d]", line):
-                if not skip and inside:
-                    total += int(line.split()[1])
+                if not skip and "libc.so" not in here["ob"]:
+                    found[function] = found.get(function, 0) + int(line.split()[1])
                 skip = False
-    return total
+    return found
+
+
+def in_their_files(functions, symbols):
+    """{Place: instructions}, by the files that functions are defined in: callgrind goes by their first line, which may
+    be inlined from elsewhere."""
+    files, found = {}, {}
+    for _, file, name in symbols:
+        files.setdefault(name, set()).add(file)
+    for (file, name), n in functions.items():
+        known = files.get(name, {file})
+        place = Place(next(iter(known)) if len(known) == 1 else file, name, None)
+        found[place] = found.get(place, 0) + n
+    return found
 
 
 def count_host(image):
@@ -103,7 +136,10 @@ def count_host(image):
     pictures = printed(run(["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}", "--toggle-collect=bench_draw",
                             "--dump-after=bench_draw", image]))
     dumps = sorted(glob.glob(out + ".*"), key=lambda name: int(name.rsplit(".", 1)[1]))
-    counts = [Count(outside_libc(dump), None, *picture) for dump, picture in zip(dumps, pictures)]
+    counts, symbols = [], text_symbols("nm", image)
+    for dump, picture in zip(dumps, pictures):
+        places = in_their_files(outside_libc(dump), symbols)
+        counts.append(Count(sum(places.values()), None, *picture, places))
     for dump in [*dumps, out]:
         if os.path.exists(dump):
             os.unlink(dump)
@@ -126,6 +162,39 @@ def regions(path):
     return found
 
 
+class Places:
+    """The Place of every instruction of an image."""
+
+    def __init__(self, symbols, code):
+        self.code, self.symbols, self.starts = code, symbols, [address for address, _, _ in symbols]
+        self.addresses = sorted(code)
+        self.block = functools.lru_cache(None)(self._block)
+        self.pixel_loops = functools.lru_cache(None)(self._pixel_loops)
+
+    def _pixel_loops(self, number):
+        """Addresses in the pixel loops of a function."""
+        ends = [bisect.bisect_left(self.addresses, start) for start in [*self.starts, self.addresses[-1] + 1][number:number + 2]]
+        return pixels.of_function([self.code[at] for at in self.addresses[slice(*ends)]])[0]
+
+    def _block(self, first, last):
+        """{Place: instructions} of a block."""
+        found, at = {}, first
+        while at <= last:
+            number = bisect.bisect_right(self.starts, at) - 1
+            place = Place(*self.symbols[number][1:], at in self.pixel_loops(number))
+            found[place] = found.get(place, 0) + 1
+            at += self.code[at].size
+        return found
+
+    def of(self, blocks):
+        """The same of a region; blocks: {(first, last): times}."""
+        found = {}
+        for key, times in blocks.items():
+            for place, n in self.block(*key).items():
+                found[place] = found.get(place, 0) + n * times
+        return found
+
+
 def count_emulated(image, target, plugin):
     out = image + ".regions"
     symbols = dict(reversed(line.split()[::2]) for line in run([tools_prefix(target) + "nm", image]).splitlines()
@@ -139,7 +208,8 @@ def count_emulated(image, target, plugin):
     if done.returncode != 0:
         raise Failed(f"{EMULATORS[target][0]}: {image}: status {done.returncode}: {done.stderr.strip()[-400:]}")
     cycles = model.Model(target, tools_prefix(target) + "objdump", image)
-    counts = [Count(n, cycles.cycles(blocks, edges), *picture)
+    places = Places(text_symbols(tools_prefix(target) + "nm", image), cycles.code)
+    counts = [Count(n, cycles.cycles(blocks, edges), *picture, places.of(blocks))
               for (n, blocks, edges), picture in zip(regions(out), printed(done.stderr))]
     os.unlink(out)
     return counts

@@ -5,6 +5,8 @@ CYCLES_CORE := $(filter fixed/% src/raster/% src/geometry/% src/scene/%,$(CORE_S
 CYCLES_DEPS := tools/cycles/bench.c $(CYCLES_CORE) tools/cycles/cases.h tools/cycles/drawn.h tools/cycles/scene_data.h \
   $(wildcard include/edgewalk/*.h fixed/*.inc src/*/*.h)
 COUNT_TARGETS ?= host m0plus m3 m4 m33 rv32imc
+# what tools/cycles/goals.csv has aims for
+GOAL_TARGETS ?= host m0plus m3 m4
 COUNT_BITS := 8
 # sample scenes that are drawn beside the standard ones
 COUNT_SCENES := courtyard
@@ -86,4 +88,12 @@ count-run: $(call bench_images,$(COUNT_BITS))
 	@$(COUNT)count.py --build $(C) --bits $(COUNT_BITS) --csv build/report/counts.csv --memory build/report/memory.csv $(COUNT_TARGETS)
 check-counts-run update-counts-run: $(call bench_images,$(COUNT_BITS))
 	@$(COUNT)baseline.py $(firstword $(subst -, ,$@)) --build $(C) --bits $(COUNT_BITS) --baseline tools/cycles/baseline.csv $(COUNT_TARGETS)
+goals:  ## what is aimed at against what is reached, and where instructions go where it is not (GOAL_TARGETS=)
+	@SETUP=$(SETUP) tools/setup/setup.sh count
+	@$(MAKE) --no-print-directory -j2 COUNT_TARGETS="$(GOAL_TARGETS)" goals-run
+goals-run: $(call bench_images,$(COUNT_BITS)) report-size
+	@mkdir -p build/report
+	@$(COUNT)goals.py --build $(C) --bits $(COUNT_BITS) --goals tools/cycles/goals.csv --sizes build/report/size.csv \
+	  --csv build/report/goals.csv --where build/report/where.csv $(COUNT_TARGETS)
+.PHONY: goals goals-run
 .PHONY: count check-counts update-counts count-run check-counts-run update-counts-run

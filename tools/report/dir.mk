@@ -38,7 +38,7 @@ report-worst: $(BIN)/search_worst
 	@mkdir -p $(REPORT)
 	@$(BIN)/search_worst --tries 3000 >$(REPORT)/worst.txt || [ $$? = 1 ] || exit 2
 report-run: $(call bench_images,$(REPORT_BITS)) $(work_images) $(visibility_images) $(foreach b,$(REPORT_BITS),$(C)/$(b)/judge) report-atlas report-size report-worst
-	@PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=tools/cycles $(PYTHON) tools/report/report.py --build $(C) --out $(REPORT) \
+	@PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=tools/cycles $(PYTHON) tools/report/report.py --build $(C) --out $(REPORT) --goals tools/cycles/goals.csv \
 	  --bits "$(REPORT_BITS)" --scenes "$(foreach s,$(COUNT_SCENES),$(s)=$(B)/scenes/$(s).ewb)" $(COUNT_TARGETS)
 # The three ways alone.
 visibility: $(visibility_images) $(C)/count.so

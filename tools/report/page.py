@@ -2,6 +2,7 @@
 import html
 import os
 
+import aims
 import atlas
 import charts
 import memory
@@ -34,6 +35,7 @@ h1 { font-size: 1.9rem; line-height: 1.2; margin: 32px 0 8px; } h2 { margin: 48p
 p, li { max-width: 75ch; } .soft, figcaption { color: var(--soft); font-size: 0.9rem; } code { font-size: 0.9em; }
 nav { margin-bottom: 16px; } nav a { margin-right: 14px; white-space: nowrap; }
 .grid { display: grid; gap: 12px; grid-template-columns: repeat(auto-fill, minmax(min(100%, 400px), 1fr)); }
+.single { max-width: 760px; }
 .pictures { grid-template-columns: repeat(auto-fill, minmax(min(100%, 240px), 1fr)); }
 figure { margin: 0; } img { width: 100%; height: auto; display: block; border: 1px solid var(--line); background: #fff; }
 .pictures img { image-rendering: pixelated; }
@@ -305,7 +307,7 @@ def check_images(out, text):
             raise tables.Failed(f"{path}: the page shows it, and it is not there")
 
 
-def write(out, rows, auto, names, differing, bits, worked, in_memory, versions):
+def write(out, rows, auto, names, differing, bits, worked, in_memory, aimed, versions):
     scenes = list(dict.fromkeys(row["scene"] for row in rows))
     text = f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
@@ -313,7 +315,7 @@ def write(out, rows, auto, names, differing, bits, worked, in_memory, versions):
 <h1>edgewalk: speed against accuracy</h1>
 <p>edgewalk is a fixed-point 3D rasterizer for microcontrollers that is told how much error a scene can bear and does no more work
 than that. This page shows what each way of drawing a texture costs on six processors, how far from the truth it is, and what a picture costs in <a href="#memory">less and less RAM</a>.</p>
-<nav><a href="#cost">Cost</a> <a href="#accuracy">Accuracy</a> <a href="#auto">The automatic choice</a> <a href="#work">Cost against work</a>
+<nav><a href="#cost">Cost</a> <a href="#aims">Aims</a> <a href="#accuracy">Accuracy</a> <a href="#auto">The automatic choice</a> <a href="#work">Cost against work</a>
 <a href="#visibility">What hides what</a> <a href="#size">Flash and stack</a> <a href="#stability">Where methods fail</a>
 {" ".join(f'<a href="#scene-{scene}">Scene {scene}</a>' for scene in scenes)} <a href="#how">How it was measured</a></nav>
 
@@ -326,6 +328,9 @@ reciprocal table of {bits} bits (the default). 320 x 240 pixels, RGB565, 16-bit 
 <p class="soft">{"; ".join(f"{name}: {text}" for name, text in TARGETS.items())}. All rows:
 <a href="speed_accuracy.csv">speed_accuracy.csv</a>, <a href="cycles.csv">cycles.csv</a>, with low and high cycles too.</p>
 <p class="soft">Scenes: {" ".join(f'<a href="#scene-{scene}">{scene}</a>: {SCENES.get(scene, "a sample scene.")}' for scene in scenes)}</p>
+
+<h2 id="aims">Aims</h2>
+{aims.section(*aimed, table, charts_of)}
 
 <h2 id="accuracy">How far from the truth</h2>
 <p>Against the referee, the same on every target. Methods: one linear map over the whole triangle (affine) or over runs of 8, 16 or 32
@@ -367,6 +372,7 @@ table sizes; <a href="auto.csv">auto.csv</a> names both for every case.</p>
 <pre>make report            # this page, its tables and charts
 make stability         # where methods fail
 make worst             # the search for the worst triangles, longer
+make goals             # what is aimed at against what is reached
 make count             # the counts of the default table on a terminal
 make check-counts      # fails where a count has grown by more than 1 %</pre>
 </body></html>

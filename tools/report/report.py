@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the report: tables, charts, pictures and a page that shows them.
 
-usage: report.py --build DIR --out DIR --bits "4 5 ..." --scenes "NAME=FILE.ewb ..." TARGET ...
+usage: report.py --build DIR --out DIR --goals GOALS.csv --bits "4 5 ..." --scenes "NAME=FILE.ewb ..." TARGET ...
 
 DIR of the build holds, for each size of the reciprocal table, the images that tools/cycles counts
 and the program that judges them. Two jobs run side by side.
@@ -13,14 +13,17 @@ import os
 import sys
 import time
 
+import aims
 import atlas
 import baseline
 import charts
 import count
+import goals
 import memory
 import page
 import tables
 import visibility
+import where
 import work
 
 
@@ -47,8 +50,9 @@ def judge(build, bits, scenes):
     return list(csv.DictReader(count.run([os.path.join(build, str(bits), "judge"), *scenes]).splitlines()))
 
 
-def measure(args, progress):
-    """Rows of speed_accuracy for every size of the table, {size: what was judged}, rows of memory for the first, rows of work."""
+def measure(args, default, progress):
+    """Rows of speed_accuracy for every size of the table, {size: what was judged}, rows of memory for the first, rows of work,
+    and of where.csv and goals.csv for the default."""
     cases, references, rows, judged, modes = count.list_cases(args.build), count.list_references(args.build), [], {}, []
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         names, jobs = {}, {}
@@ -71,8 +75,11 @@ def measure(args, progress):
             judged[bits] = jobs[bits, "judged"].result()
             rows += tables.speed_accuracy(bits, judged[bits], cases, counts)
             modes = modes or count.memory_rows(cases, counts, references)
+            if bits == default:
+                stages = [row for target, of in counts.items() for row in where.rows_of(target, cases, of)]
+                aimed = list(goals.rows_of(args.goals, cases, counts, goals.read_sizes(os.path.join(args.out, "size.csv"))))
     worked = work.rows_of(args.build, {target: jobs["work", target].result() for target in work.targets_of(args.targets)})
-    return rows, judged, modes, worked
+    return rows, judged, modes, worked, stages, aimed
 
 
 def draw_pictures(args, bits):
@@ -88,17 +95,21 @@ def main():
     parser.add_argument("--build", required=True)
     parser.add_argument("--out", required=True)
     parser.add_argument("--bits", required=True, type=lambda text: [int(b) for b in text.split()])
+    parser.add_argument("--goals", required=True)
     parser.add_argument("--scenes", required=True, type=str.split)
     parser.add_argument("targets", nargs="+", choices=count.TARGETS)
     args = parser.parse_args()
     default = count.DEFAULT_BITS if count.DEFAULT_BITS in args.bits else args.bits[-1]
     progress = Progress(len(args.bits) * (len(args.targets) + 1) + len(work.targets_of(args.targets)) + 2)
-    rows, judged, modes, worked = measure(args, progress)
+    goals.read(args.goals)  # what is wrong with it is said before the images run
+    rows, judged, modes, worked, stages, aimed = measure(args, default, progress)
     auto = list(tables.auto_rows(rows))
     tables.write(os.path.join(args.out, "speed_accuracy.csv"), tables.COLUMNS, rows)
     tables.write(os.path.join(args.out, "cycles.csv"), tables.CYCLE_COLUMNS, tables.cycle_rows(rows))
     count.write_memory(os.path.join(args.out, "memory.csv"), modes)
     tables.write(os.path.join(args.out, "auto.csv"), tables.AUTO_COLUMNS, auto)
+    tables.write(os.path.join(args.out, "where.csv"), where.COLUMNS, stages)
+    tables.write(os.path.join(args.out, "goals.csv"), goals.COLUMNS, aimed)
     fitted, frames, sizes = list(work.fits(worked)), list(work.frames(worked)), work.read_sizes(args.out)
     tables.write(os.path.join(args.out, "work.csv"), work.COLUMNS, worked)
     tables.write(os.path.join(args.out, "work_slopes.csv"), work.FIT_COLUMNS, fitted)
@@ -108,16 +119,17 @@ def main():
     visibility.measure(args.build, args.out, args.targets)
     work_names = work.draw(os.path.join(args.out, "charts"), worked, *sizes)
     memory_names = memory.draw(os.path.join(args.out, "charts"), modes)
+    aim_names = aims.draw(os.path.join(args.out, "charts"), stages)
     progress.step("pictures")
     differing = draw_pictures(args, default)
     page.write(args.out, rows, auto, names, differing, default, (fitted, frames, *sizes, *work_names), (modes, memory_names),
-               {target: baseline.versions(target) for target in args.targets})
+               (aimed, aim_names), {target: baseline.versions(target) for target in args.targets})
     progress.step("page")
     progress.end()
-    say(args.out, rows, judged, auto)
+    say(args.out, rows, judged, auto, aimed)
 
 
-def say(out, rows, judged, auto):
+def say(out, rows, judged, auto, aimed):
     """What was promised and is not so, a line each, and a summary."""
     over = [row for row in auto if row["state"] == "over"]
     for bits, of_size in judged.items():
@@ -132,6 +144,8 @@ def say(out, rows, judged, auto):
         own = [row for row in auto if row["method"] == name]
         print(f"report: {name}: {sum(row['state'] == 'ok' for row in own)} of {len(own)} as cheap as the cheapest rung, within 5 % of "
               "what the bound allows and 10 % of what measures so")
+    states = [row["state"] for row in aimed]
+    print(f"report: aims: {states.count('met')} met, {states.count('missed')} missed: {out}/goals.csv")
     print(f"report: {out}/index.html; {len(rows)} rows of speed_accuracy.csv")
 
 
