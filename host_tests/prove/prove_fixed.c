@@ -15,6 +15,8 @@ void prove_fixed(void)
     (void)ew_mul_u32_pieces(any32(), any32());
     (void)ew_mulh_u32_pieces(any32(), any32());
     (void)ew_mul_u32_u16_pieces(any32(), between(0, 65535));
+    (void)ew_wrap_mul64_u16_pieces(any64(), between(0, 65535));
+    (void)ew_wrap_mul64_u16(any64(), between(0, 65535));
     (void)ew_mulh_s32_pieces(any_s32(), any_s32());
     (void)ew_mulh_u32(any32(), any32());
     (void)ew_mulh_s32(any_s32(), any_s32());

@@ -48,6 +48,10 @@ static void high_words_of_pieces(void **state)
         const uint32_t u = (uint32_t)a, half = (uint32_t)b & 0xFFFFu;
         assert_true(ew_mul_u32_u16_pieces(u, half) == (uint64_t)u * half);
         assert_true(ew_mul_u32_u16(u, half) == (uint64_t)u * half);
+        const uint64_t wide = (uint64_t)(uint32_t)test_awkward() << 32 | u;
+        test_context("%08lx%08lx * %u", (unsigned long)(wide >> 32), (unsigned long)u, (unsigned)half);
+        assert_true(ew_wrap_mul64_u16_pieces(wide, half) == wide * half);
+        assert_true(ew_wrap_mul64_u16(wide, half) == wide * half);
     }
 }
 

@@ -36,7 +36,8 @@ typedef uint32_t ew_uq1_31; /* [0, 2)                 near/z: 2^31 at the near p
  * the only place that relies on it, and test_fixed checks it. */
 #define EW_ASR(value, bits) ((value) >> (bits))
 
-/* Sums and products modulo 2^32 and 2^64: overflow is expected and harmless. */
+/* Sums and products modulo 2^32 and 2^64: overflow is expected and harmless. ew_wrap_mul64_u16, below, is the last one
+ * for b < 2^16. */
 static inline int32_t ew_wrap_add32(int32_t a, int32_t b) { return (int32_t)((uint32_t)a + (uint32_t)b); }
 static inline int32_t ew_wrap_sub32(int32_t a, int32_t b) { return (int32_t)((uint32_t)a - (uint32_t)b); }
 static inline uint64_t ew_wrap_mul64(uint64_t a, int32_t b) { return a * (uint64_t)(int64_t)b; }
@@ -69,6 +70,10 @@ static inline uint64_t ew_mul_u32_u16_pieces(uint32_t a, uint32_t b)
     const uint32_t low = ew_low16(a) * b, high = (a >> 16) * b + (low >> 16); /* <= (2^16 - 1)^2 + 2^16 - 1 */
     return (uint64_t)(high >> 16) << 32 | (high << 16 | ew_low16(low));
 }
+static inline uint64_t ew_wrap_mul64_u16_pieces(uint64_t a, uint32_t b)
+{
+    return ew_mul_u32_u16_pieces((uint32_t)a, b) + ((uint64_t)((uint32_t)(a >> 32) * b) << 32); /* the upper half wraps */
+}
 static inline int32_t ew_mulh_s32_pieces(int32_t a, int32_t b)
 {
     /* the upper halves keep the sign: no correction is needed afterwards */
@@ -84,6 +89,7 @@ static inline uint64_t ew_mul_u32(uint32_t a, uint32_t b) { return ew_mul_u32_pi
 static inline int32_t ew_mulh_s32(int32_t a, int32_t b) { return ew_mulh_s32_pieces(a, b); }
 static inline uint32_t ew_mulh_u32(uint32_t a, uint32_t b) { return ew_mulh_u32_pieces(a, b); }
 static inline uint64_t ew_mul_u32_u16(uint32_t a, uint32_t b) { return ew_mul_u32_u16_pieces(a, b); }
+static inline uint64_t ew_wrap_mul64_u16(uint64_t a, uint32_t b) { return ew_wrap_mul64_u16_pieces(a, b); }
 #define ew_product_less ew_product_less_pieces
 #else
 static inline int64_t ew_mul_s32(int32_t a, int32_t b) { return (int64_t)a * b; }
@@ -91,6 +97,7 @@ static inline uint64_t ew_mul_u32(uint32_t a, uint32_t b) { return (uint64_t)a *
 static inline int32_t ew_mulh_s32(int32_t a, int32_t b) { return (int32_t)EW_ASR((int64_t)a * b, 32); }
 static inline uint32_t ew_mulh_u32(uint32_t a, uint32_t b) { return (uint32_t)(((uint64_t)a * b) >> 32); }
 static inline uint64_t ew_mul_u32_u16(uint32_t a, uint32_t b) { return (uint64_t)a * b; }
+static inline uint64_t ew_wrap_mul64_u16(uint64_t a, uint32_t b) { return a * b; }
 #define ew_product_less ew_product_less_long
 #endif
 

@@ -503,6 +503,13 @@ EW_NOINLINE int start_piece(ew_raster *raster, int32_t x, int32_t y, int32_t n)
     return 0;
 }
 
+/* Of x, from where planes stand: below 4096. */
+EW_ALWAYS_INLINE uint32_t columns_of(const ew_triangle *t, int32_t x)
+{
+    EW_ASSERT(x >= t->column && x - t->column < 4096);
+    return (uint32_t)(x - t->column);
+}
+
 /* A span from x on. */
 EW_NOINLINE void start_narrow(ew_linear *l, const ew_triangle *t, int32_t x)
 {
@@ -554,12 +561,12 @@ EW_ALWAYS_INLINE int steps_suffice(const ew_triangle *t, uint32_t w, uint32_t la
 EW_NOINLINE void wide_start(ew_linear *l, const ew_triangle *t, int32_t x)
 {
     const ew_plane64 *p = t->plane.wide;
-    x -= t->column;
+    const uint32_t columns = columns_of(t, x);
     l->align = 0;
     l->dw = top_of(p[EW_PLANE_W].dx, 0), l->du = top_of(p[EW_PLANE_U].dx, 0), l->dv = top_of(p[EW_PLANE_V].dx, 0);
-    l->w = top_of(p[EW_PLANE_W].row + ew_wrap_mul64(p[EW_PLANE_W].dx, x), 0);
-    l->u = top_of(p[EW_PLANE_U].row + ew_wrap_mul64(p[EW_PLANE_U].dx, x), 0);
-    l->v = top_of(p[EW_PLANE_V].row + ew_wrap_mul64(p[EW_PLANE_V].dx, x), 0);
+    l->w = top_of(p[EW_PLANE_W].row + ew_wrap_mul64_u16(p[EW_PLANE_W].dx, columns), 0);
+    l->u = top_of(p[EW_PLANE_U].row + ew_wrap_mul64_u16(p[EW_PLANE_U].dx, columns), 0);
+    l->v = top_of(p[EW_PLANE_V].row + ew_wrap_mul64_u16(p[EW_PLANE_V].dx, columns), 0);
 }
 
 /* The longest piece, from the first pixel on, for which steps of 32 bits will do. */
@@ -570,14 +577,14 @@ static int32_t piece_length(const ew_triangle *t, uint64_t w, int32_t n, int *al
     if (t->attributes == 0) return smaller(n, EW_LONGEST_RUN);
     n = smaller(n, longest_piece(t));
     for (;; n = (n + 1) >> 1) {
-        if (t->rung != EW_RUNG_AFFINE) *align = alignment(w, w + ew_wrap_mul64(t->plane.wide[EW_PLANE_W].dx, n - 1), &least);
+        if (t->rung != EW_RUNG_AFFINE) *align = alignment(w, w + ew_wrap_mul64_u16(t->plane.wide[EW_PLANE_W].dx, (uint32_t)n - 1u), &least);
         if (n == 1 || steps_suffice(t, least, least, n)) return n;
     }
 }
 
-static uint32_t wide_at(const ew_plane64 *p, int32_t columns, int align)
+static uint32_t wide_at(const ew_plane64 *p, uint32_t columns, int align)
 {
-    return top_of(p->row + ew_wrap_mul64(p->dx, columns), align);
+    return top_of(p->row + ew_wrap_mul64_u16(p->dx, columns), align);
 }
 
 /* work.linear from x on, for as many of n pixels as it will do. Returns their number. */
@@ -586,19 +593,19 @@ EW_NOINLINE int32_t next_of_wide(ew_raster *raster, const ew_triangle *t, int32_
     const ew_plane64 *p = t->plane.wide;
     ew_linear *l = &raster->work.now.span.linear;
     EW_KEEP_ORDER(l);
-    x -= t->column;
-    const uint64_t w = p[EW_PLANE_W].row + ew_wrap_mul64(p[EW_PLANE_W].dx, x);
+    const uint32_t columns = columns_of(t, x);
+    const uint64_t w = p[EW_PLANE_W].row + ew_wrap_mul64_u16(p[EW_PLANE_W].dx, columns);
     n = piece_length(t, w, n, &l->align);
     l->w = (int64_t)w > 0 ? top_of(w, l->align) : 1; /* then n is 1 */
     l->dw = top_of(p[EW_PLANE_W].dx, l->align);
     l->u = l->du = l->v = l->dv = 0;
     if (t->attributes) {
-        l->u = wide_at(&p[EW_PLANE_U], x, l->align), l->du = top_of(p[EW_PLANE_U].dx, l->align);
-        l->v = wide_at(&p[EW_PLANE_V], x, l->align), l->dv = top_of(p[EW_PLANE_V].dx, l->align);
+        l->u = wide_at(&p[EW_PLANE_U], columns, l->align), l->du = top_of(p[EW_PLANE_U].dx, l->align);
+        l->v = wide_at(&p[EW_PLANE_V], columns, l->align), l->dv = top_of(p[EW_PLANE_V].dx, l->align);
     }
     p += EW_PLANE_SHADE;
     for (int i = 0; i < t->attributes - 2; i++, p++) {
-        l->shade[i] = wide_at(p, x, l->align), l->dshade[i] = top_of(p->dx, l->align);
+        l->shade[i] = wide_at(p, columns, l->align), l->dshade[i] = top_of(p->dx, l->align);
     }
     return n;
 }
