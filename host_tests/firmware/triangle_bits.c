@@ -23,6 +23,12 @@ typedef struct triangle_case {
     uint8_t dear : 1;  /* runs are: short ones are drawn pixel by pixel */
 } triangle_case;
 
+/* More than 1 is a failure: machine code once returned how many rows it had drawn. */
+static int checked(int result)
+{
+    return result > 1 ? -result : result;
+}
+
 /* Most are of the picture's size and many reach over its borders; near/z over a range of 32. */
 static void any_corner(generator *g, ew_raster_vertex *corner)
 {
@@ -59,7 +65,7 @@ static int draw_small(uint16_t row)
     for (int i = 0; i < COUNT && result >= 0; i++) {
         ew_raster_vertex corner[3];
         any_small(&g, corner);
-        result = ew_raster_triangle(&same_raster, &corner[0], &corner[1], &corner[2]);
+        result = checked(ew_raster_triangle(&same_raster, &corner[0], &corner[1], &corner[2]));
         drawn += result > 0;
     }
     return result < 0 || drawn < TRIANGLES ? -1 : 0;
@@ -80,13 +86,21 @@ static uint32_t draw_large(const ew_material *material, int dear)
         { .x = 10 * INT32_C(4096), .y = 60 * INT32_C(4096), .w = UINT32_C(1) << 20, .u = 100 * INT32_C(4096) },
         { .x = 26 * INT32_C(4096), .y = 60 * INT32_C(4096), .w = UINT32_C(1) << 27, .v = 100 * INT32_C(4096) },
     };
+    /* on the affine rung some of its spans are just as long as one run may be: once that was another number here and there */
+    static const ew_raster_vertex cut[3] = {
+        { .w = UINT32_C(1) << 29 },
+        { .x = 257 * INT32_C(4096), .w = UINT32_C(1) << 29, .u = 2125 * INT32_C(4096), .v = 333 * INT32_C(4096) },
+        { .x = 100 * INT32_C(4096), .y = 3000 * INT32_C(4096), .w = UINT32_C(1) << 29, .u = 555 * INT32_C(4096),
+          .v = 999 * INT32_C(4096) },
+    };
     generator g = { 362436069u };
     int drawn = 0, result = ew_raster_init(&same_raster, &target);
     if (!result) result = ew_raster_set_material(&same_raster, material);
     if (!result && dear) result = ew_raster_set_cost(&same_raster, &dear_runs);
     ew_raster_clear(&same_raster, 0x18E3);
     if (!result) result = ew_raster_triangle(&same_raster, &steep[0], &steep[1], &steep[2]);
-    const uint32_t hash = picture_hash(PICTURE_HASH_START, same_picture.colour, 320 * 64); /* all others lie in front */
+    if (result >= 0) result = ew_raster_triangle(&same_raster, &cut[0], &cut[1], &cut[2]);
+    const uint32_t hash = picture_hash(PICTURE_HASH_START, same_picture.colour, 320 * 240); /* others will lie in front */
     for (int i = 0; i < COUNT && result >= 0; i++) {
         ew_raster_vertex corner[3];
         const int32_t texels_more = i % 3 == 2 ? 16 : 1 + i % 3 * 5;
@@ -105,7 +119,7 @@ static uint32_t draw_large(const ew_material *material, int dear)
                 corner[k].v *= texels_more;
             }
         }
-        result = ew_raster_triangle(&same_raster, &corner[0], &corner[1], &corner[2]);
+        result = checked(ew_raster_triangle(&same_raster, &corner[0], &corner[1], &corner[2]));
         drawn += result > 0;
     }
     if (result < 0 || drawn < COUNT / 4) print_failure("large triangles", ew_error_text(result));
@@ -134,7 +148,7 @@ static uint32_t draw(const ew_target *picture, const ew_material *material, int 
         for (int i = 0; i < TRIANGLES && !small; i++) {
             ew_raster_vertex corner[3];
             for (int k = 0; k < 3; k++) any_corner(&g, &corner[k]);
-            if (result >= 0) result = ew_raster_triangle(&same_raster, &corner[0], &corner[1], &corner[2]);
+            if (result >= 0) result = checked(ew_raster_triangle(&same_raster, &corner[0], &corner[1], &corner[2]));
             drawn += result > 0;
         }
         hash = picture_hash(hash, same_picture.colour, units);

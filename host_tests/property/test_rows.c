@@ -168,8 +168,62 @@ static void kept(void **state)
     assert_true((drawn > count && parts > 4 * drawn) || cases_alone());
 }
 
+/* A list of kept triangles, drawn up to a number and then on, with empty scissors in between: they once made
+ * machine code draw 2^32 rows. */
+static void listed(void **state)
+{
+    (void)state;
+    static ew_active active[TRIANGLES];
+    const uint16_t places = sizeof(ew_active) / EW_PLACE_BYTES;
+    long drawn = 0, count = 0, parts = 0;
+    for (cases c = cases_of("listed", 20000, 1000000); cases_next(&c); count++) {
+        random_scene();
+        for (int i = 1; i < TRIANGLES; i++) scene.material[i] = scene.material[0];
+        const uint32_t seed = test_random();
+        int reached[TRIANGLES], is_begun = 0;
+        uint16_t head = EW_NO_PLACE;
+        const uint32_t most = 1 + pick(scene.target.height);
+        test_context("EW_CASE=%ld, bands of up to %u", c.number, most);
+        picture_fill(&whole, seed);
+        picture_fill(&cut, seed);
+        drawn += draw_whole(reached);
+        begin(&cut, 0, scene.target.height);
+        use(0);
+        for (uint16_t first = 0, rows; first < scene.target.height; first = (uint16_t)(first + rows)) {
+            const uint32_t left = (uint32_t)(scene.target.height - first);
+            rows = (uint16_t)(1 + pick(most < left ? most : left));
+            go_to(first, rows);
+            if (!is_begun && raster.scissor.y0 == raster.scissor.y1) continue;
+            uint16_t *link = &head;
+            for (uint16_t i = 0; i < TRIANGLES && !is_begun; i++) {
+                const ew_raster_vertex *v = scene.corner[i];
+                if (ew_raster_begin(&raster, &v[0], &v[1], &v[2], scene.scissor.y1) <= 0) continue;
+                ew_raster_keep(&raster, &active[i]);
+                active[i].number = i;
+                active[i].next = EW_NO_PLACE;
+                *link = (uint16_t)(i * places);
+                link = &active[i].next;
+            }
+            is_begun = 1;
+            for (uint32_t empty = pick(3); empty <= 2; empty++) { /* the last one is not */
+                const ew_rect whole_band = raster.scissor;
+                if (empty < 2) raster.scissor.y1 = raster.scissor.y0;
+                ew_active_list list = { .places = (uint8_t *)active, .link = &head, .ended = EW_NO_PLACE };
+                ew_raster_draw_list(&raster, &list, pick(TRIANGLES));
+                ew_raster_draw_list(&raster, &list, TRIANGLES);
+                assert_int_equal(*list.link, EW_NO_PLACE);
+                for (uint16_t at = list.ended; at != EW_NO_PLACE; at = ew_active_in(&list, at)->next) parts++;
+                raster.scissor = whole_band;
+            }
+        }
+        same();
+    }
+    cases_figure("rows", "listed", count, drawn, 0, (double)parts, "ended");
+    assert_true((drawn > count && parts >= drawn) || cases_alone());
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = { TEST(bands_anew), TEST(kept) };
+    const struct CMUnitTest tests[] = { TEST(bands_anew), TEST(kept), TEST(listed) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -226,7 +226,7 @@ typedef struct ew_rows {
     uint32_t stride;       /* bytes                                                        */
     uint32_t apart;        /* from a pixel's depth to its colour, bytes, less EW_APART_LESS */
     int32_t left;          /* rows                                                         */
-    int32_t reached;       /* of which so many have pixels                                 */
+    int32_t reached;       /* rows that have pixels                                        */
     /* for runs: */
     const uint16_t *recip; /* the table                                                    */
     uint32_t low, log2_height; /* as in ew_packing                                         */

@@ -71,16 +71,27 @@ EW_ALWAYS_INLINE int ew_zeros_of(uint32_t w) { return ew_clz32(w | 1u); }
 #if defined(__GNUC__) && defined(__thumb__) && defined(__OPTIMIZE__) && !defined(EW_PORTABLE) && \
     (defined(__thumb2__) || !defined(__clang__))
 #define EW_HAS_PIXEL_LOOP 1
-typedef char ew_rows_order[offsetof(ew_rows, edge) == 28 && offsetof(ew_rows, depth) == 44 && offsetof(ew_rows, left) == 56 &&
-                           offsetof(ew_rows, recip) == 64 && offsetof(ew_rows, is_256) == 76 && offsetof(ew_rows, drawn) == 92 && offsetof(ew_linear, dv) == 20 &&
-                           offsetof(ew_triangle, plane) == 40 && offsetof(ew_triangle, shortest) == 8 &&
-                           offsetof(ew_triangle, run_shift) == 14 && offsetof(ew_triangle, w_lead) == 21 &&
-                           offsetof(ew_triangle, u_base) == 28 && offsetof(ew_span_work, fill.textured.rows) == 124 &&
-                           offsetof(ew_span_work, by) == 52 && offsetof(ew_span_work, limit) == 76 &&
-                           offsetof(ew_span_work, left) == 92 && offsetof(ew_span_work, first) == 96 &&
-                           offsetof(ew_span_work, is_ready) == 100 && offsetof(ew_span_work, fill.textured.pen) == 104 &&
-                           offsetof(ew_edge, dy) == 16 && sizeof(ew_edge) == 20 && sizeof(ew_plane32) == 12 &&
-                           sizeof(ew_plane64) == 24 ? 1 : -1];
+#define EW_AT(type, field, where) (offsetof(type, field) == (where))
+typedef char ew_rows_order[EW_AT(ew_rows, edge, 28) && EW_AT(ew_rows, planes, 32) && EW_AT(ew_rows, x1, 40) &&
+                           EW_AT(ew_rows, depth, 44) && EW_AT(ew_rows, stride, 48) && EW_AT(ew_rows, apart, 52) &&
+                           EW_AT(ew_rows, left, 56) && EW_AT(ew_rows, reached, 60) && EW_AT(ew_rows, recip, 64) &&
+                           EW_AT(ew_rows, low, 68) && EW_AT(ew_rows, log2_height, 72) && EW_AT(ew_rows, is_256, 76) &&
+                           EW_AT(ew_rows, first, 80) && EW_AT(ew_rows, pixels, 84) && EW_AT(ew_rows, run, 88) &&
+                           EW_AT(ew_rows, drawn, 92) ? 1 : -1];
+typedef char ew_triangle_order[EW_AT(ew_triangle, run_scale, 0) && EW_AT(ew_triangle, longest, 6) &&
+                               EW_AT(ew_triangle, shortest, 8) && EW_AT(ew_triangle, sure_run, 10) &&
+                               EW_AT(ew_triangle, column, 12) && EW_AT(ew_triangle, run_shift, 14) &&
+                               EW_AT(ew_triangle, is_wide, 16) && EW_AT(ew_triangle, w_lead, 21) &&
+                               EW_AT(ew_triangle, uv_bits, 22) && EW_AT(ew_triangle, u_shift, 23) &&
+                               EW_AT(ew_triangle, v_shift, 24) && EW_AT(ew_triangle, u_base, 28) &&
+                               EW_AT(ew_triangle, v_base, 32) && EW_AT(ew_triangle, plane, 40) ? 1 : -1];
+typedef char ew_span_order[EW_AT(ew_linear, dv, 20) && EW_AT(ew_span_work, by, 52) && EW_AT(ew_span_work, limit, 76) &&
+                           EW_AT(ew_run_limit, fall, 4) && EW_AT(ew_run_limit, longest, 8) && EW_AT(ew_run_limit, down, 12) &&
+                           EW_AT(ew_span_work, first, 96) && EW_AT(ew_span_work, is_ready, 100) &&
+                           EW_AT(ew_span_work, fill.textured.pen, 104) && EW_AT(ew_pen, w, 8) && EW_AT(ew_pen, dw, 12) &&
+                           EW_AT(ew_span_work, fill.textured.rows, 124) && EW_AT(ew_edge, dy, 16) && sizeof(ew_edge) == 20 &&
+                           sizeof(ew_plane32) == 12 && sizeof(ew_plane64) == 24 ? 1 : -1];
+#undef EW_AT
 /* What is taken off ew_rows.apart: the pixel loop of Thumb-2 has gone on to the next pixel's depth when it stores a
  * colour. */
 #if defined(__thumb2__)

@@ -24,7 +24,7 @@ EW_ALWAYS_INLINE uint32_t ew_root16(uint32_t product, int exponent)
  * first pixel and q = 4 t w / |dw|, N^2 <= q where w grows along the run and N^2 + 4 t N <= q
  * where it falls. */
 
-/* Whether a span of n pixels, at most EW_LONGEST_RUN, may be one run. */
+/* Whether a span of n pixels, at most EW_LONGEST_PIECE, may be one run. */
 EW_ALWAYS_INLINE int ew_one_run_suffices(const ew_triangle *t, uint32_t w, uint32_t dw, int align, int32_t n)
 {
     /* the tangent's far end is the mirrored first pixel: one beyond the last where n is even */

@@ -551,10 +551,9 @@ EW_ALWAYS_INLINE int32_t longest_piece(const ew_triangle *t)
  * both ends; affine, where w' does not matter: n 2^bits <= 2^32, 1/128 texel (docs/error-bound.md). */
 EW_ALWAYS_INLINE int steps_suffice(const ew_triangle *t, uint32_t w, uint32_t last, int32_t n)
 {
-    int32_t least = smaller((int32_t)w, (int32_t)last); /* rounding may take it below 0 */
-    if (t->rung == EW_RUNG_AFFINE) least = INT32_MAX;
-    return n <= longest_piece(t) &&
-           n * ((int32_t)1 << (t->uv_bits - EW_BITS_LEAST)) <= EW_ASR(least, EW_BITS_LEAST - 1); /* 2^9 2^8 */
+    const int32_t least = smaller((int32_t)w, (int32_t)last); /* rounding may take it below 0 */
+    const int32_t most = t->rung == EW_RUNG_AFFINE ? (int32_t)1 << (32 - EW_BITS_LEAST) : EW_ASR(least, EW_BITS_LEAST - 1);
+    return n <= longest_piece(t) && n * ((int32_t)1 << (t->uv_bits - EW_BITS_LEAST)) <= most; /* 2^9 2^8 */
 }
 
 /* The same for wide triangles, unaligned. */
@@ -613,12 +612,9 @@ EW_NOINLINE int32_t next_of_wide(ew_raster *raster, const ew_triangle *t, int32_
 /* ---- rows ---- */
 
 #if EW_HAS_SPAN_LOOP && !EW_TRACE
-static void planes_step_back(ew_triangle *t)
+static void wide_step_back(ew_plane64 p[])
 {
-    for (int i = 0; i <= 2; i++) {
-        if (t->is_wide) t->plane.wide[i].row -= t->plane.wide[i].dy;
-        else t->plane.narrow[i].row -= t->plane.narrow[i].dy;
-    }
+    for (int i = 0; i <= 2; i++) p[i].row -= p[i].dy;
 }
 #endif
 
@@ -637,7 +633,7 @@ EW_ALWAYS_INLINE void planes_step(ew_triangle *t, int wide, int attributes)
     for (int i = EW_PLANE_SHADE; i <= attributes; i++) p[i].row += p[i].dy;
 }
 
-/* A span that has to be cut, or whose runs have to be found. */
+/* A span that may have to be cut, or whose runs may have to be found. */
 EW_NOINLINE void span_of_texture(ew_raster *raster, const ew_triangle *t, int32_t x, int32_t y, int32_t n)
 {
     ew_linear *l = &raster->work.now.span.linear;
@@ -690,11 +686,12 @@ EW_ALWAYS_INLINE void run_of_texture(ew_raster *raster, const ew_triangle *t, in
 EW_HOT int ew_rows_of_texture(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
 {
     int reached = 0;
+    EW_ASSERT(row < end);
     raster->work.now.span.is_ready = 0;
     for (; row < end; row++) {
         const int32_t x = larger(edge[0].x, raster->scissor.x0), n = smaller(edge[1].x, raster->scissor.x1) - x;
         if (n > 0) {
-            /* with machine code for runs, others are too few to pay */
+            /* the same either way, but slower; with machine code for runs the other rungs are too few to pay for both */
             if (!EW_HAS_SPAN_LOOP && n <= t->sure_run) run_of_texture(raster, t, x, row, n);
             else span_of_texture(raster, t, x, row, n);
             reached = 1;
@@ -744,9 +741,9 @@ EW_NOINLINE int32_t span_left(ew_raster *raster, ew_triangle *t, ew_edge *edge, 
     ew_rows *rows = &span->fill.textured.rows;
     if (m == EW_SPAN_CUT) {
         const int32_t x = larger(edge[0].x, raster->scissor.x0), n = smaller(edge[1].x, raster->scissor.x1) - x;
-        planes_step_back(t);
+        wide_step_back(t->plane.wide); /* only wide triangles' spans are cut */
         span_of_texture(raster, t, x, end - rows->left, n);
-        planes_step(t, t->is_wide, 2);
+        planes_step(t, 1, 2);
     } else {
         ew_pen *pen = &span->fill.textured.pen;
         pen->depth = rows->first;
@@ -836,6 +833,7 @@ EW_HOT int ew_rows_packed(ew_raster *raster, ew_triangle *t, ew_edge *edge, int3
 {
     ew_plane32 *p = t->plane.narrow;
     int reached = 0;
+    EW_ASSERT(row < end);
     for (; row < end; row++) {
         const int32_t x = larger(edge[0].x, raster->scissor.x0), n = smaller(edge[1].x, raster->scissor.x1) - x;
         if (n > 0) {

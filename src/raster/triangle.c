@@ -122,7 +122,7 @@ EW_ALWAYS_INLINE int draw_rows(ew_raster *raster, int32_t end)
         start_edge(raster, !k->longest, k->middle, k->bottom, turn);
         reached |= draw_some(raster, turn, end);
     }
-    return reached;
+    return reached != 0;
 }
 
 int ew_raster_triangle_in_range(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_vertex *b,
@@ -256,7 +256,7 @@ int ew_raster_draw_active(ew_raster *raster, ew_active *active)
         row = turn;
     }
     if (row == turn) start_lowest_edge(active);
-    return draw_part(raster, active, row, end) | reached;
+    return (draw_part(raster, active, row, end) | reached) != 0;
 }
 
 void ew_raster_draw_list(ew_raster *raster, ew_active_list *list, uint32_t number)
@@ -264,6 +264,11 @@ void ew_raster_draw_list(ew_raster *raster, ew_active_list *list, uint32_t numbe
     const int32_t row = raster->scissor.y0, end = raster->scissor.y1;
     const ew_active_list in = *list; /* so that it stays in registers */
     uint16_t *link = in.link;
+    if (row >= end) { /* only to where the next triangles go */
+        while (*link != EW_NO_PLACE && ew_active_in(&in, *link)->number < number) link = &ew_active_in(&in, *link)->next;
+        list->link = link;
+        return;
+    }
     raster->work.now.span.has_rows = 0;
     while (*link != EW_NO_PLACE) {
         ew_active *active = ew_active_in(&in, *link);

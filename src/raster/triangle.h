@@ -43,7 +43,7 @@ void ew_planes_pack(ew_triangle *t, const ew_packing *packing);
 void ew_planes_go(ew_triangle *t, uint32_t columns, uint32_t rows);
 
 /* Draw rows from `row` to below `end`, one at least, of a triangle whose edges and planes stand on `row`, cut to
- * the scissor in x, and step both. Return whether a pixel was reached. The last is for all
+ * the scissor in x, and step both. Return other than 0 when a pixel was reached. The last is for all
  * triangles, which must be raster->work's. */
 int ew_rows_of_texture(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end);
 int ew_rows_of_runs(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end);
