@@ -12,7 +12,7 @@ BUILD = os.path.join(cross.ROOT, os.path.dirname(os.environ.get("EW_BIN", "build
 STACK_LIMIT = 512  # bytes, below: any public call
 
 
-HEADERS = ("fixed", "error", "raster", "draw2d", "geometry", "light", "scene", "display", "panel")
+HEADERS = ("fixed", "error", "raster", "draw2d", "geometry", "picture", "light", "scene", "display", "panel")
 LAYERS = ("fixed", "src/raster", "src/geometry", "src/scene", "src/display")
 
 
@@ -44,8 +44,9 @@ class Hot(unittest.TestCase):
     """EW_HOT and EW_HOT_TABLE: what rows and pixels need lies where a firmware puts it."""
 
     DEFINES = ['-DEW_HOT=__attribute__((section(".ew_hot")))', '-DEW_HOT_TABLE=__attribute__((section(".ew_hot_table")))']
-    # all rows of triangles go through the first two, clears through the last
-    ROOTS = ("ew_rows_of_texture", "ew_rows_of_runs", "ew_rows_packed", "ew_rows_of_any", "ew_raster_fill")
+    # all rows of triangles go through these but for the last: clears do
+    ROOTS = ("ew_rows_of_texture", "ew_rows_packed", "ew_rows_of_any", "ew_raster_fill")
+    MORE_ROOTS = {"m3": ("ew_rows_of_runs",)} # where there is machine code for them
     TABLES = {"ew_recip_entries", "layouts", "bayer"}
 
     def sections(self, target, objects):
@@ -65,7 +66,7 @@ class Hot(unittest.TestCase):
             with self.subTest(target=target):
                 objects = cross.build(target, "-O2", LAYERS, self.DEFINES, BUILD)
                 graph, found = cross.Stacks(objects), self.sections(target, objects)
-                reached, ahead = set(), list(self.ROOTS)
+                reached, ahead = set(), list(self.ROOTS + self.MORE_ROOTS.get(target, ()))
                 while ahead:
                     name = ahead.pop()
                     if name not in reached and name in graph.frame:

@@ -44,18 +44,32 @@ typedef struct ew_row32 {
     int64_t rest;       /* 2^31 times (translation + 1 for rounding)                       */
 } ew_row32;
 
+/* The same for cores without a long multiply: m = high 2^15 + low, |low| <= 2^14. */
+typedef struct ew_row_pieces {
+    int32_t high[3], low[3];
+    int32_t rest;       /* translation + 1                                                 */
+} ew_row_pieces;
+
+#if EW_LONG_MULTIPLY
+typedef ew_row32 ew_quick_row;
+#else
+typedef ew_row_pieces ew_quick_row;
+#endif
+
 /* Model space to the screen, homogeneous: px = x/w, py = y/w, depth = near/w. */
 typedef struct ew_transform {
-    ew_row x, y, w;     /* here e_last = e                                                  */
-    int64_t near_w;     /* the near distance in units of 2^(w.e - 45), those of row w's sums */
-    ew_q20_12 left, top;      /* the viewport                                               */
-    uint32_t across, down;    /* in the same units                                          */
-    /* The same for the vertices that 32 bits suffice for: src/geometry/transform.c. */
-    ew_row32 x32, y32, w32;
-    int32_t w_safe;     /* sums of w32 from here on are beyond the near plane, and exact enough */
+    /* For the vertices that 32 bits suffice for (src/geometry/transform.c); ahead, for the short offsets of
+     * ARMv6-M. */
+    ew_quick_row quick_x, quick_y, quick_w;
+    int32_t w_safe;     /* sums of quick_w from here on are beyond the near plane, and exact enough */
     int32_t w_hidden;   /* sums below this are nearer than it                               */
     uint32_t near_m;    /* near distance = near_m 2^-(near_shift + 3) in units of those sums */
     int8_t near_shift, shift_x, shift_y;
+    ew_q20_12 left, top;      /* the viewport                                               */
+    uint32_t across, down;    /* in the same units                                          */
+    /* For all others. */
+    ew_row x, y, w;     /* here e_last = e                                                  */
+    int64_t near_w;     /* the near distance in units of 2^(w.e - 45), those of row w's sums */
 } ew_transform;
 
 /* Makes the transform for one model; `model_view` takes vertices as q1.15 to view space.

@@ -359,14 +359,14 @@ static EW_OWN_FRAME void sort(ew_picture_work *w)
 static ew_mesh *mesh_at_hand(const ew_picture_work *w) { return (ew_mesh *)(void *)w->slots; }
 
 /* The next object of a picture that is drawn at once, where nothing has to be sorted: its mesh is ready
- * behind the bands. Returns 0 behind the last and after an error. */
-static EW_OWN_FRAME int next_mesh(ew_picture_work *w, int *error)
+ * behind the bands. Returns 1, 0 behind the last, or an error. */
+static EW_OWN_FRAME int next_mesh(ew_picture_work *w)
 {
     if (w->object == w->count) return 0;
     const ew_object *object = &w->objects[w->object++];
     ew_mesh *mesh = mesh_at_hand(w);
-    *error = ew_raster_set_material(w->geometry->raster, &object->material);
-    if (*error) return 0;
+    const int error = ew_raster_set_material(w->geometry->raster, &object->material);
+    if (error) return error;
     w->geometry->transform = object->transform;
     *mesh = object->mesh;
     if (!mesh->screen) {
@@ -478,6 +478,16 @@ static EW_OWN_FRAME void hand_over(const ew_picture_work *w)
     if (behind == w->bands || begins(w, behind)) w->picture->band(w->picture->user, &w->geometry->raster->target);
 }
 
+static inline int draw_meshes(ew_picture_work *w)
+{
+    int error;
+    while ((error = next_mesh(w)) > 0) {
+        const int32_t drawn = ew_draw_triangles(w->geometry, mesh_at_hand(w));
+        if (drawn < 0) return (int)drawn;
+    }
+    return error;
+}
+
 /* One band after the other, in the caller's frame: below this lie the deepest calls. */
 static inline int draw(ew_picture_work *w)
 {
@@ -490,11 +500,17 @@ static inline int draw(ew_picture_work *w)
         if (start_band(w)) {
             if (EW_WITH_SPANS && w->row) error = ew_draw_visible(w);
             else if (w->is_listed) error = ew_draw_band(w);
-            else while (error >= 0 && next_mesh(w, &error)) error = (int)ew_draw_triangles(w->geometry, mesh_at_hand(w));
+            else error = draw_meshes(w);
         }
         if (error >= 0) hand_over(w);
     }
     return error < 0 ? error : EW_OK;
+}
+
+static EW_OWN_FRAME void tell(ew_picture_counts *counts, const ew_picture_work *w)
+{
+    const ew_picture_counts all = { w->set_up, w->again, w->transformed, w->most_active, w->crossings, w->sections };
+    *counts = all;
 }
 
 int ew_picture_draw(const ew_picture *picture, const ew_object *objects, uint32_t count, ew_geometry *geometry,
@@ -504,9 +520,6 @@ int ew_picture_draw(const ew_picture *picture, const ew_object *objects, uint32_
     if (error) return error;
     ew_picture_work *w = &geometry->work.picture;
     const int result = draw(w);
-    if (counts) {
-        const ew_picture_counts all = { w->set_up, w->again, w->transformed, w->most_active, w->crossings, w->sections };
-        *counts = all;
-    }
+    if (counts) tell(counts, w);
     return result;
 }

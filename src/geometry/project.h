@@ -22,12 +22,6 @@ static inline int32_t ew_sum32(const ew_row32 *row, int32_t x, int32_t y, int32_
     return (int32_t)EW_ASR(sum, 32);
 }
 
-/* The same bits for cores without a long multiply, with the vertex as q1.15: m = high 2^15 + low,
- * |low| <= 2^14. */
-typedef struct ew_row_pieces {
-    int32_t high[3], low[3], rest;
-} ew_row_pieces;
-
 static inline void ew_row_pieces_init(ew_row_pieces *out, const ew_row32 *row)
 {
     for (int i = 0; i < 3; i++) {
@@ -37,6 +31,7 @@ static inline void ew_row_pieces_init(ew_row_pieces *out, const ew_row32 *row)
     out->rest = (int32_t)EW_ASR(row->rest, 31);
 }
 
+/* The same bits as ew_sum32, with the vertex as q1.15. */
 static inline int32_t ew_sum32_pieces(const ew_row_pieces *row, int32_t x, int32_t y, int32_t z)
 {
     int32_t low = row->low[0] * x + row->low[1] * y + row->low[2] * z; /* |.| <= 3 2^29 */

@@ -48,16 +48,22 @@ static int32_t rounded_down(int32_t m, int32_t down)
     return down > 31 ? 0 : EW_ASR(EW_ASR(m, down - 1) + 1, 1);
 }
 
-static void row32_init(ew_row32 *out, const ew_row *row, int32_t down)
+static void quick_row_init(ew_quick_row *out, const ew_row *row, int32_t down)
 {
-    for (int j = 0; j < 3; j++) out->m[j] = rounded_down(row->m[j], down);
-    out->rest = ((int64_t)rounded_down(row->m[3], down) + 1) * ((int64_t)1 << 31);
+    ew_row32 made;
+    for (int j = 0; j < 3; j++) made.m[j] = rounded_down(row->m[j], down);
+    made.rest = ((int64_t)rounded_down(row->m[3], down) + 1) * ((int64_t)1 << 31);
+#if EW_LONG_MULTIPLY
+    *out = made;
+#else
+    ew_row_pieces_init(out, &made);
+#endif
 }
 
-/* Row x or y. A sum's unit is 2^exponent times that of w32's: then a position below
+/* Row x or y. A sum's unit is 2^exponent times that of quick_w's: then a position below
  * 2^(exponent + 1) px in magnitude fits. Returns EW_OK, or EW_ERR_RANGE when the row is so
  * much larger than w's that positions would leave the guard band. */
-static int position_row(ew_row32 *out, int8_t *shift, const ew_row *row, int32_t w_unit,
+static int position_row(ew_quick_row *out, int8_t *shift, const ew_row *row, int32_t w_unit,
                         int32_t least_exponent)
 {
     int32_t down = row32_down(row), exponent = row->e + down - w_unit;
@@ -65,7 +71,7 @@ static int position_row(ew_row32 *out, int8_t *shift, const ew_row *row, int32_t
         down += least_exponent - exponent;
         exponent = least_exponent;
     }
-    row32_init(out, row, down);
+    quick_row_init(out, row, down);
     *shift = (int8_t)(15 - exponent);
     return exponent <= 15 ? EW_OK : EW_ERR_RANGE;
 }
@@ -81,12 +87,12 @@ static int32_t bits_of_borders(int32_t from, uint32_t size)
 static EW_OWN_FRAME void choose_rows32(ew_transform *t, const ew_viewport *viewport)
 {
     int32_t down = row32_down(&t->w);
-    int32_t w_unit = t->w.e + down; /* sums of w32 are in units of 2^(w_unit - 29) */
-    row32_init(&t->w32, &t->w, down);
+    int32_t w_unit = t->w.e + down; /* sums of quick_w are in units of 2^(w_unit - 29) */
+    quick_row_init(&t->quick_w, &t->w, down);
     int32_t least_x = bits_of_borders(viewport->x, viewport->width);
     int32_t least_y = bits_of_borders(viewport->y, viewport->height);
-    int error = position_row(&t->x32, &t->shift_x, &t->x, w_unit, least_x);
-    if (!error) error = position_row(&t->y32, &t->shift_y, &t->y, w_unit, least_y);
+    int error = position_row(&t->quick_x, &t->shift_x, &t->x, w_unit, least_x);
+    if (!error) error = position_row(&t->quick_y, &t->shift_y, &t->y, w_unit, least_y);
     /* near_w = near_m 2^(32 - zeros) in units of 2^(w.e - 45) */
     int zeros = ew_clz64((uint64_t)t->near_w);
     int32_t near_zeros = zeros - 16 + down;
@@ -285,21 +291,16 @@ void ew_transform_vertices(const ew_transform *transform, const ew_vertex16 *in,
                            ew_screen_vertex *out)
 {
 #if EW_LONG_MULTIPLY
-    const ew_row32 *x32 = &transform->x32, *y32 = &transform->y32, *w32 = &transform->w32;
     const int32_t unit = 65536; /* to q1.31 */
-#define SUM(row) ew_sum32(row, x, y, z)
+#define SUM(row) ew_sum32(&transform->row, x, y, z)
 #else
-    ew_row_pieces x32[1], y32[1], w32[1];
-    ew_row_pieces_init(x32, &transform->x32);
-    ew_row_pieces_init(y32, &transform->y32);
-    ew_row_pieces_init(w32, &transform->w32);
     const int32_t unit = 1;
-#define SUM(row) ew_sum32_pieces(row, x, y, z)
+#define SUM(row) ew_sum32_pieces(&transform->row, x, y, z)
 #endif
     for (const ew_vertex16 *end = in + count; in < end; in++, out++) {
         int32_t x = in->x * unit, y = in->y * unit, z = in->z * unit;
-        int32_t w = SUM(w32);
-        if (w < transform->w_safe || !project_quickly(out, transform, SUM(x32), SUM(y32), w)) {
+        int32_t w = SUM(quick_w);
+        if (w < transform->w_safe || !project_quickly(out, transform, SUM(quick_x), SUM(quick_y), w)) {
             project_carefully(out, transform, in, w);
         }
     }

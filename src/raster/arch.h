@@ -69,7 +69,7 @@ EW_ALWAYS_INLINE int ew_zeros_of(uint32_t w) { return ew_clz32(w | 1u); }
 
 /* On ARMv6-M all eight low registers are needed, of which Clang keeps one. */
 #if defined(__GNUC__) && defined(__thumb__) && defined(__OPTIMIZE__) && !defined(EW_PORTABLE) && \
-    (defined(__thumb2__) || !defined(__clang__))
+    (defined(__thumb2__) || !defined(__clang__)) && !EW_TRACE
 #define EW_HAS_PIXEL_LOOP 1
 #define EW_AT(type, field, where) (offsetof(type, field) == (where))
 typedef char ew_rows_order[EW_AT(ew_rows, edge, 28) && EW_AT(ew_rows, planes, 32) && EW_AT(ew_rows, x1, 40) &&

@@ -113,7 +113,7 @@ EW_ALWAYS_INLINE void fill_packed(ew_packing *k, ew_pen *pen, packed at, packed 
     uint32_t w = pen->w, dw = pen->dw;
     pen->colour = c + n;
     pen->depth = z + n;
-#if EW_HAS_PIXEL_LOOP && !EW_TRACE
+#if EW_HAS_PIXEL_LOOP
     pen->w = ew_fill_pixels(k, c, z, n, w, dw, at.high, at.low, step.high, step.low);
 #else
     const uint16_t *texels = k->texels;
@@ -307,7 +307,7 @@ EW_NOINLINE int32_t pixels_of_texture(ew_packing *k, const ew_triangle *t, ew_sp
 }
 
 /* What is left of a piece, when a run of m pixels is next. */
-static void rest_of_piece(ew_raster *raster, const ew_triangle *t, int32_t m)
+EW_HOT static void rest_of_piece(ew_raster *raster, const ew_triangle *t, int32_t m)
 {
     ew_packing *k = &raster->work.packing;
     ew_span_work *span = &raster->work.now.span;
@@ -581,7 +581,7 @@ static int32_t piece_length(const ew_triangle *t, uint64_t w, int32_t n, int *al
     }
 }
 
-static uint32_t wide_at(const ew_plane64 *p, uint32_t columns, int align)
+EW_ALWAYS_INLINE uint32_t wide_at(const ew_plane64 *p, uint32_t columns, int align)
 {
     return top_of(p->row + ew_wrap_mul64_u16(p->dx, columns), align);
 }
@@ -611,7 +611,7 @@ EW_NOINLINE int32_t next_of_wide(ew_raster *raster, const ew_triangle *t, int32_
 
 /* ---- rows ---- */
 
-#if EW_HAS_SPAN_LOOP && !EW_TRACE
+#if EW_HAS_SPAN_LOOP
 static void wide_step_back(ew_plane64 p[])
 {
     for (int i = 0; i <= 2; i++) p[i].row -= p[i].dy;
@@ -702,7 +702,7 @@ EW_HOT int ew_rows_of_texture(ew_raster *raster, ew_triangle *t, ew_edge *edge, 
     return reached;
 }
 
-#if EW_HAS_ROW_LOOP && !EW_TRACE
+#if EW_HAS_ROW_LOOP
 /* Makes ready for the machine code of arch.h, which then draws from `row` to below `end`. */
 EW_ALWAYS_INLINE ew_rows *rows_init(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
 {
@@ -733,7 +733,7 @@ EW_ALWAYS_INLINE ew_rows *rows_init(ew_raster *raster, ew_triangle *t, ew_edge *
 }
 #endif
 
-#if EW_HAS_SPAN_LOOP && !EW_TRACE
+#if EW_HAS_SPAN_LOOP
 /* The span that machine code left for the m that it returned. Returns how many rows are left. */
 EW_NOINLINE int32_t span_left(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t end, int32_t m)
 {
@@ -769,11 +769,6 @@ EW_HOT int ew_rows_of_runs(ew_raster *raster, ew_triangle *t, ew_edge *edge, int
     raster->work.now.span.is_ready = 0;
     while ((m = ew_walk_spans(rows)) != EW_ROWS_DONE && span_left(raster, t, edge, end, m)) continue;
     return rows->reached;
-}
-#else
-EW_HOT int ew_rows_of_runs(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
-{
-    return ew_rows_of_texture(raster, t, edge, row, end);
 }
 #endif
 
@@ -821,7 +816,7 @@ void ew_planes_go(ew_triangle *t, uint32_t columns, uint32_t rows)
     }
 }
 
-#if EW_HAS_ROW_LOOP && !EW_TRACE
+#if EW_HAS_ROW_LOOP
 EW_HOT int ew_rows_packed(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
 {
     ew_rows *rows = rows_init(raster, t, edge, row, end);
