@@ -102,6 +102,9 @@ test:  ## set up what is missing and run every host test
 	@EW_BIN=$(BIN) $(RUN) $(UNIT_TESTS) $(PROPERTY_TESTS) $(MESA_TESTS) $(CONFIG_TESTS) $(STATIC_TESTS) $(CLI_TESTS) \
 	  $(patsubst build/$(MODE)/%,build/sanitize/%,$(SANITIZE_TESTS))
 SANITIZE_TESTS := $(filter-out $(T)/test_recip $(T)/test_readme,$(UNIT_TESTS)) $(T)/test_any_bits
-test-programs: programs $(BIN)/ew-accuracy $(UNIT_TESTS) $(PROPERTY_TESTS) $(MESA_TESTS) $(CONFIG_TESTS) check-tables
+# for test_where, for what can be built here
+COUNTED := $(patsubst %,$(C)/$(COUNT_BITS)/bench-%,$(filter m0plus m3 m4 m33 rv32imc,$(BIG_TARGETS)))
+test-programs: programs $(BIN)/ew-accuracy $(UNIT_TESTS) $(PROPERTY_TESTS) $(MESA_TESTS) $(CONFIG_TESTS) check-tables \
+  $(COUNTED) $(if $(COUNTED),$(C)/list $(C)/count.so)
 sanitize-programs: $(SANITIZE_TESTS)
 .PHONY: test test-programs sanitize-programs

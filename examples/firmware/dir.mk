@@ -17,7 +17,7 @@ FIRMWARE_TARGETS := $(BIG_TARGETS) $(LITTLE_TARGETS) $(call here,avr)
 # ---- the core, once for each target ----
 optimise = $(if $(filter host-%,$(1)),,-O2)
 define firmware_core
-$(CORE_SRCS:%.c=$(F)/$(1)/%.o): $(F)/$(1)/%.o: %.c
+$(CORE_SRCS:%.c=$(F)/$(1)/%.o): $(F)/$(1)/%.o: %.c $(BOARD)/boards.mk
 	@mkdir -p $$(@D)
 	$$(cc_$(1)) $$(call optimise,$(1)) -std=c99 -pedantic -ffreestanding -ffunction-sections -fdata-sections $$(WARN) \
 	  $$(EW_CONFIG) -Iinclude $$(DEPFLAGS) -c -o $$@ $$<

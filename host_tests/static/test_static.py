@@ -2,6 +2,7 @@
 each target whose compiler is there."""
 import os
 import re
+import subprocess
 import sys
 import unittest
 
@@ -85,6 +86,30 @@ class Hot(unittest.TestCase):
                 # and what is done once a triangle, a material or a scene does not
                 for name in ("ew_setup", "ew_raster_init", "ew_scene_open", "ew_texture_check", "ew_draw_text"):
                     self.assertNotIn(".ew_hot", by_name[name], name)
+
+
+class Options(unittest.TestCase):
+    """The machine code of arch.h asks for nearly all registers: compilers find them whatever they are told."""
+
+    LEVELS = ("-O1", "-Og", "-O2", "-O3", "-Os")
+    # with an FPU GCC once found none: it has other registers to spill to then
+    THUMB2 = ("-mcpu=cortex-m3", "-mcpu=cortex-m4 -mfloat-abi=hard", "-mcpu=cortex-m7 -mfloat-abi=softfp",
+              "-mcpu=cortex-m33 -mfloat-abi=hard -fno-omit-frame-pointer", "-mcpu=cortex-m4 -mfloat-abi=hard -fpic",
+              "-mcpu=cortex-m55 -mfloat-abi=hard -fstack-protector-all")
+    ARMV6M = ("-mcpu=cortex-m0", "-mcpu=cortex-m0plus -fpic", "-mcpu=cortex-m23 -mlong-calls",
+              "-mcpu=cortex-m0plus -fno-omit-frame-pointer -DEW_PORTABLE")
+
+    def test_the_rows_compile_with_all(self):
+        if cross.missing("m3"):
+            self.skipTest(cross.missing("m3"))
+        for cpu in self.THUMB2 + self.ARMV6M:
+            for level in self.LEVELS:
+                for source in ("span", "triangle"):
+                    with self.subTest(options=cpu, level=level, source=source):
+                        made = subprocess.run(["arm-none-eabi-gcc", "-mthumb", *cpu.split(), level, "-std=c99", "-ffreestanding",
+                                               "-Iinclude", "-S", "-o", os.devnull, f"src/raster/{source}.c"],
+                                              cwd=cross.ROOT, stderr=subprocess.PIPE, text=True)
+                        self.assertEqual((made.returncode, made.stderr), (0, ""))
 
 
 class Reader(unittest.TestCase):

@@ -155,12 +155,19 @@ EW_ALWAYS_INLINE uint32_t ew_fill_pixels(ew_packing *k, uint16_t *c, uint16_t *z
                          : [dw] "r"(dw), [dhigh] "r"(dhigh), [dlow] "r"(dlow), [texels] "r"(k->texels),
                            [apart] "r"(apart)
                          : "cc", "memory");
-    } else {
+    } else { /* all registers but r7: GCC does not find them where there is an FPU */
+        register uint16_t *z_ __asm__("r0") = z;
+        register int32_t n_ __asm__("r1") = n;
+        register uint32_t w_ __asm__("r2") = w, high_ __asm__("r3") = high, low_ __asm__("r4") = low, t_ __asm__("r5");
+        register uint32_t dw_ __asm__("r6") = dw, dhigh_ __asm__("r8") = dhigh, dlow_ __asm__("r9") = dlow;
+        register const uint16_t *texels_ __asm__("r10") = k->texels;
+        register uint32_t apart_ __asm__("r11") = apart, mask_ __asm__("r12") = k->mask, turn_ __asm__("lr") = k->turn;
         __asm__ volatile(EW_PIXELS("ror %[t], %[high], %[turn]\n\tand %[t], %[t], %[mask]\n\t")
-                         : [z] "+r"(z), [n] "+r"(n), [w] "+r"(w), [high] "+r"(high), [low] "+r"(low), [t] "=&r"(t)
-                         : [dw] "r"(dw), [dhigh] "r"(dhigh), [dlow] "r"(dlow), [texels] "r"(k->texels),
-                           [apart] "r"(apart), [mask] "r"(k->mask), [turn] "r"(k->turn)
+                         : [z] "+r"(z_), [n] "+r"(n_), [w] "+r"(w_), [high] "+r"(high_), [low] "+r"(low_), [t] "=&r"(t_)
+                         : [dw] "r"(dw_), [dhigh] "r"(dhigh_), [dlow] "r"(dlow_), [texels] "r"(texels_),
+                           [apart] "r"(apart_), [mask] "r"(mask_), [turn] "r"(turn_)
                          : "cc", "memory");
+        return w_;
     }
     return w;
 }

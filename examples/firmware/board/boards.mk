@@ -6,6 +6,8 @@ board_semihosting := $(addprefix $(BOARD)/,semihost.c stack.c memory.c text.c)
 board_arm := $(BOARD)/start_m.c $(board_semihosting)
 
 arm = arm-none-eabi-gcc -mthumb -mfloat-abi=soft -mcpu=$(1)
+# with an FPU compilers have other registers to spill to, and other trouble with machine code
+arm_fpu = arm-none-eabi-gcc -mthumb -mfloat-abi=hard -mfpu=auto -mcpu=$(1)
 # flash and its size, RAM and its size; the linker refuses what does not fit
 memory = -T $(BOARD)/m.ld -Wl,--defsym=_flash=$(1),--defsym=_flash_bytes=$(2),--defsym=_ram=$(3),--defsym=_ram_bytes=$(4) \
   -nostdlib -Wl,--gc-sections -Wl,--no-warn-rwx-segments -lgcc
@@ -17,9 +19,9 @@ cc_lm3s6965evb = $(call arm,cortex-m3)
 cc_m0plus = $(call arm,cortex-m0plus)
 cc_m3 = $(call arm,cortex-m3)
 cc_m4 = $(call arm,cortex-m4)
-cc_m7 = $(call arm,cortex-m7)
+cc_m7 = $(call arm_fpu,cortex-m7)
 cc_m33 = $(call arm,cortex-m33)
-cc_m55 = $(call arm,cortex-m55)
+cc_m55 = $(call arm_fpu,cortex-m55)
 link_microbit = $(call memory,0,0x40000,0x20000000,0x4000)
 link_lm3s6965evb = $(call memory,0,0x40000,0x20000000,0x10000)
 link_m3 = $(call memory,0,0x400000,0x20000000,0x400000)

@@ -8,8 +8,20 @@ int main(void);
 void reset(void);
 void fault(void);
 
+#if defined(__ARM_FP) || defined(__ARM_FEATURE_MVE)
+#define CPACR (*(volatile uint32_t *)0xE000ED88u)
+static void start_fpu(void)
+{
+    CPACR |= UINT32_C(0xF) << 20; /* coprocessors 10 and 11, for all */
+    __asm__ volatile("dsb\n\tisb" : : : "memory");
+}
+#else
+static void start_fpu(void) {}
+#endif
+
 void reset(void)
 {
+    start_fpu();
     const uint32_t *from = _sidata;
     for (uint32_t *to = _sdata; to < _edata;) *to++ = *from++;
     for (uint32_t *to = _sbss; to < _ebss;) *to++ = 0;
