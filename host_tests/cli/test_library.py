@@ -3,6 +3,7 @@ import os
 import re
 import shutil
 import subprocess
+import tempfile
 import unittest
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -73,6 +74,25 @@ class Library(unittest.TestCase):
                             self.assertIn(public.group(1), allowed)
                         else:
                             self.assertNotIn("/", name)  # private headers lie beside their sources
+
+    def test_cpp_programs_link_with_it(self):
+        with open(os.path.join(ROOT, "include/edgewalk/edgewalk.h"), encoding="utf-8") as source:
+            self.assertEqual(set(re.findall(r'#include "(\w+\.h)"', source.read())),
+                             {name for name in os.listdir(os.path.join(ROOT, "include/edgewalk"))
+                              if name not in ("edgewalk.h", "picture_work.h", "raster_work.h")})
+        names = {"ew_error_text", "ew_raster_init", "ew_geometry_init", "ew_lighting_set", "ew_picture_draw", "ew_scene_open",
+                 "ew_draw_text", "ew_mat44_perspective", "ew_hid_display_init", "ew_pack_rgb444"}
+        text = "#include <cstdio>\n#include <edgewalk/edgewalk.h>\n"
+        for i, name in enumerate(sorted(names)):
+            text += f"void (*volatile f{i})() = reinterpret_cast<void (*)()>({name});\n"
+        text += "int main() { std::puts(ew_error_text(EW_ERR_ROOM)); }\n"
+        with tempfile.TemporaryDirectory() as folder:
+            for standard in ("c++11", "c++17", "c++20"):
+                program = os.path.join(folder, standard)
+                subprocess.run(["g++", f"-std={standard}", "-Wall", "-Wextra", "-Werror", "-Iinclude", "-x", "c++", "-", "-x", "none",
+                                os.path.join(ROOT, LIBRARY), "-o", program], input=text, text=True, check=True, cwd=ROOT)
+                self.assertEqual(subprocess.run([program], check=True, stdout=subprocess.PIPE, text=True).stdout,
+                                 "not enough memory given\n")
 
     def test_cross_builds_need_only_compiler_helpers(self):
         built = 0

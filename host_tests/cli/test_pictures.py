@@ -205,7 +205,7 @@ class Render(unittest.TestCase):
         self.assert_fails(1, self.folder.name, *out, says="it is a directory")
         with open(self.scene, "rb") as f:
             good = f.read()
-        cases = {"empty": (b"", "empty"), "text": (b"hello, world, this is not a scene", "not an edgewalk file"),
+        cases = {"empty": (b"", "empty"), "model": (b"glTF\2\0\0\0and so on", "a glTF model, for ew-bake to bake"), "text": (b"hello, world, this is not a scene", "not an edgewalk file"),
                  "short": (good[:-1], "cut short"), "head": (good[:40], "cut short"),
                  "changed": (good[:5000] + bytes([good[5000] ^ 4]) + good[5001:], "wrong checksum"),
                  "version": (good[:4] + b"\2\0" + good[6:], "version")}
@@ -226,6 +226,12 @@ class Render(unittest.TestCase):
         self.assertEqual(run("ew-render", self.scene, "-o", self.path("link.png"), "--size", "8x8").returncode, 0)
         self.assertTrue(os.path.islink(self.path("link.png")))
         self.assertEqual(png_pixels(self.path("target.png"))[0], (8, 8))
+        with open(self.scene, "rb") as f:
+            good = f.read()
+        for options in ((), ("-a", "-n", "2")):
+            self.assert_fails(1, self.scene, *options, "-o", self.scene, says="cannot be written: is the input file")
+        with open(self.scene, "rb") as f:
+            self.assertEqual(f.read(), good)
         if os.path.exists("/dev/full"):
             self.assert_fails(1, self.scene, "-o", "/dev/full/no.png", says="cannot be written: Not a directory")
 

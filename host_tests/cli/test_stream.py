@@ -193,6 +193,18 @@ class BadInput(StreamTest):
         self.refused(stream(*raw, "--out", file), file)
         self.assertEqual(file.read_text(), "kept")
 
+    def test_the_scene_is_not_written_over(self):
+        scene = self.work / "own.ewb"
+        link = self.work / "link.ewb"
+        scene.write_bytes(self.need_scene().read_bytes())
+        link.symlink_to(scene)
+        for option in ("--record", "--dump-drawn"):
+            for name in (scene, link):
+                with self.subTest(option, name=name.name):
+                    self.refused(stream(scene, "--device", self.sim, "--frames", 1, "--fps", 0, option, name), name.name, "is the input file")
+        self.assertEqual(scene.read_bytes(), self.need_scene().read_bytes())
+        self.assertEqual(list(self.work.glob("*.part")), [])
+
     def test_wrong_lines(self):
         for option in ("--gpio-reset", "--gpio-te"):
             self.refused(stream("x.ewb", "--device", self.sim, option, "gpiochip4095:7"), "gpiochip4095:7")

@@ -98,8 +98,8 @@ static uint32_t draw_large(const ew_material *material, int dear)
     if (!result) result = ew_raster_set_material(&same_raster, material);
     if (!result && dear) result = ew_raster_set_cost(&same_raster, &dear_runs);
     ew_raster_clear(&same_raster, 0x18E3);
-    if (!result) result = ew_raster_triangle(&same_raster, &steep[0], &steep[1], &steep[2]);
-    if (result >= 0) result = ew_raster_triangle(&same_raster, &cut[0], &cut[1], &cut[2]);
+    if (!result) result = checked(ew_raster_triangle(&same_raster, &steep[0], &steep[1], &steep[2]));
+    if (result >= 0) result = checked(ew_raster_triangle(&same_raster, &cut[0], &cut[1], &cut[2]));
     const uint32_t hash = picture_hash(PICTURE_HASH_START, same_picture.colour, 320 * 240); /* others will lie in front */
     for (int i = 0; i < COUNT && result >= 0; i++) {
         ew_raster_vertex corner[3];

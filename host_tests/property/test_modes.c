@@ -293,9 +293,42 @@ static void two_threads(void **state)
     }
 }
 
+static void whatever(void *user, const ew_target *band) { (void)user, (void)band; }
+
+/* Texture coordinates that lie too far apart are an error of the whole picture, at once as in bands. */
+static void refused_triangles(void **state)
+{
+    (void)state;
+    static context c;
+    static uint8_t memory[1 << 20];
+    long count = 0, refused = 0;
+    for (cases k = cases_of("modes, refused", 2000, 50000); cases_next(&k); count++) {
+        int result[2];
+        random_scene_init(&scene);
+        for (uint32_t i = 0; i < scene.count; i++) {
+            scene.object[i].mesh.uv_fraction_bits = 0;
+            for (int j = 0; j < SCENE_VERTICES; j++) scene.vertex[i][j].u = j % 2 ? INT16_MAX : INT16_MIN;
+        }
+        c.picture = scene.picture;
+        c.picture.band = whatever;
+        c.picture.buffers = 1;
+        for (int banded = 0; banded < 2; banded++) {
+            c.picture.rows = (uint16_t)(banded ? 1 + pick(c.picture.height) : c.picture.height);
+            test_context("EW_CASE=%ld, bands of %d", k.number, c.picture.rows);
+            ew_geometry_init(&c.geometry, &c.raster);
+            result[banded] = ew_picture_draw(&c.picture, scene.object, scene.count, &c.geometry, memory, sizeof memory, &c.counts);
+        }
+        assert_int_equal(result[0], result[1]);
+        assert_true(result[0] == EW_OK || result[0] == EW_ERR_RANGE);
+        refused += result[0] < 0;
+    }
+    cases_figure("modes", "refused", count, refused, 0, 0, "");
+    assert_true((refused > count / 4 && refused < count) || cases_alone());
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = { TEST(any_band_any_memory), TEST(enough_memory), TEST(kept_no_longer), TEST(many_vertices),
-                                        TEST(two_threads) };
+                                        TEST(two_threads), TEST(refused_triangles) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

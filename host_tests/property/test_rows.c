@@ -209,7 +209,9 @@ static void listed(void **state)
                 const ew_rect whole_band = raster.scissor;
                 if (empty < 2) raster.scissor.y1 = raster.scissor.y0;
                 ew_active_list list = { .places = (uint8_t *)active, .link = &head, .ended = EW_NO_PLACE };
-                ew_raster_draw_list(&raster, &list, pick(TRIANGLES));
+                const uint32_t number = pick(TRIANGLES);
+                ew_raster_draw_list(&raster, &list, number);
+                if (*list.link != EW_NO_PLACE) assert_true(ew_active_in(&list, *list.link)->number >= number);
                 ew_raster_draw_list(&raster, &list, TRIANGLES);
                 assert_int_equal(*list.link, EW_NO_PLACE);
                 for (uint16_t at = list.ended; at != EW_NO_PLACE; at = ew_active_in(&list, at)->next) parts++;

@@ -20,11 +20,6 @@ int ew_rows_of_texture(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t
     return any_of(2);
 }
 
-int ew_rows_of_runs(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
-{
-    return ew_rows_of_texture(raster, t, edge, row, end);
-}
-
 int ew_rows_packed(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
 {
     return ew_rows_of_texture(raster, t, edge, row, end);

@@ -135,8 +135,8 @@
 #error "EW_WITH_...: 0 or 1"
 #endif
 
-/* Check of what a caller promised (a NULL that must not be one, a size out of its
- * stated range). Compiled away by default; a host build sets it to assert(). Bad
+/* Check of what a caller promised (a size out of its stated range, an order of calls;
+ * pointers are used as they are). Compiled away by default; a host build sets it to assert(). Bad
  * data - a file, a stream - is never checked with it. */
 #ifndef EW_ASSERT
 #define EW_ASSERT(condition) ((void)0)

@@ -19,6 +19,10 @@
 
 #include "error.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Report ids. Lengths below do not count the id byte. */
 enum {
     EW_HID_ATTRIBUTES = 1,   /* feature, read  */
@@ -205,5 +209,9 @@ void ew_hid_display_tick(ew_hid_display *display, uint32_t ms);
 uint16_t ew_crc16(uint16_t crc, uint8_t byte);
 /* CRC-8 (polynomial 0x07, start 0) of one more byte. */
 uint8_t ew_crc8(uint8_t crc, uint8_t byte);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -13,6 +13,10 @@
 
 #include "raster.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Fills `width` x `height` pixels from (x, y) on, with `blend` of ew_blend. Returns EW_OK,
  * EW_ERR_ARGUMENT for an unknown blend, or EW_ERR_UNSUPPORTED for one that the build leaves out. */
 int ew_draw_rect(ew_raster *raster, int16_t x, int16_t y, uint16_t width, uint16_t height, uint16_t rgb565,
@@ -65,5 +69,9 @@ int ew_draw_text(ew_raster *raster, const ew_font *font, int16_t x, int16_t y, c
 /* Columns that the widest line of a text takes, without a gap behind it, at most INT32_MAX, or
  * EW_ERR_ARGUMENT for a font that is none. */
 int32_t ew_text_width(const ew_font *font, const char *text);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -2,6 +2,10 @@
 #ifndef EW_ERROR_H
 #define EW_ERROR_H
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Zero or more is success; a function that counts returns its count. */
 typedef enum ew_error {
     EW_OK = 0,
@@ -18,5 +22,9 @@ typedef enum ew_error {
 
 /* A phrase for a code, lower case, without a full stop; never NULL. */
 const char *ew_error_text(int code);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

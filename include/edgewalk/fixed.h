@@ -21,6 +21,10 @@
 #include "config.h"
 #include "error.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef int16_t ew_q1_15;  /* [-1, 1)                 vertex coordinates in their box          */
 typedef int16_t ew_q2_14;  /* [-2, 2)                 stored quaternions                        */
 typedef int32_t ew_q2_30;  /* [-2, 2)                 quaternions, sines                        */
@@ -345,5 +349,9 @@ typedef struct ew_projection {
  * factors and the sign of the last row corrected (docs/conventions.md).
  * Returns EW_OK or EW_ERR_ARGUMENT. */
 int ew_mat44_perspective(ew_mat44 *out, const ew_projection *projection);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

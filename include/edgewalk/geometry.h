@@ -13,6 +13,10 @@
 #include "picture_work.h"
 #include "raster.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* A corner as it lies in flash: 10 bytes, aligned to 2. */
 typedef struct ew_vertex16 {
     ew_q1_15 x, y, z; /* in the primitive's box                                           */
@@ -145,5 +149,9 @@ void ew_geometry_init(ew_geometry *geometry, ew_raster *raster);
  * Returns the number of triangles that reached a pixel, or the first error of
  * ew_raster_triangle. */
 int32_t ew_draw_triangles(ew_geometry *geometry, const ew_mesh *mesh);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

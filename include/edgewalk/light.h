@@ -20,6 +20,10 @@
 #include "fixed.h"
 #include "raster.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { EW_LIGHTS_MAX = 4 };
 
 /* A unit normal as it lies in flash: 127 is 1. */
@@ -62,5 +66,9 @@ int ew_lighting_set(ew_lighting *lighting, const ew_mat34 *model_to_lights, ew_c
  * axes are within 1 : 1000. */
 void ew_light_vertices(const ew_lighting *lighting, const ew_normal8 *normals, const ew_colour888 *own,
                        uint32_t count, ew_colour888 *out);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

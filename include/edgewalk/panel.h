@@ -12,6 +12,10 @@
 
 #include "error.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* ---- packing ---- */
 
 /* Packs n pixels of RGB565 in the machine's order as RGB666: three bytes for each pixel, red, green,
@@ -67,5 +71,9 @@ typedef struct ew_changed {
  *
  * Over the wire protocol of display.h there is no need: its encoder skips what has not changed. */
 int ew_changed_next(const ew_frame_rows *frame, uint16_t from, ew_changed *found);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

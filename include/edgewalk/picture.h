@@ -14,6 +14,10 @@
 #include "geometry.h"
 #include "raster.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Triangles of one material and one transform. Nothing of it is copied or changed: two contexts
  * may draw from the same objects at the same time. */
 typedef struct ew_object {
@@ -86,5 +90,9 @@ size_t ew_picture_bytes(const ew_picture *picture, const ew_object *objects, uin
  * or EW_ERR_RANGE; rows that came before an error were handed over. */
 int ew_picture_draw(const ew_picture *picture, const ew_object *objects, uint32_t count, ew_geometry *geometry,
                     void *memory, size_t bytes, ew_picture_counts *counts);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -24,6 +24,10 @@
 #include "fixed.h"
 #include "raster_work.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum {
     EW_TARGET_MAX = 4096,   /* pixels across and down                                      */
     EW_TEXTURE_MAX = 2048,  /* texels across and down                                      */
@@ -284,6 +288,10 @@ void ew_active_step(ew_active *active);
 void ew_trace_triangle(const ew_raster_vertex *a, const ew_raster_vertex *b, const ew_raster_vertex *c,
                        int rung);
 void ew_trace_fragment(uint16_t x, uint16_t y, uint16_t depth, ew_q20_12 u, ew_q20_12 v);
+#endif
+
+#ifdef __cplusplus
+}
 #endif
 
 #endif

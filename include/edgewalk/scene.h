@@ -14,6 +14,10 @@
 #include "geometry.h"
 #include "picture.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct ew_scene_section {
     const uint8_t *records;
     uint32_t count;
@@ -88,5 +92,9 @@ uint32_t ew_scene_object_count(const ew_scene *scene);
  * EW_OK, EW_ERR_ARGUMENT or EW_ERR_RANGE. */
 int ew_scene_objects(const ew_scene *scene, const ew_scene_camera *camera, const ew_mat34 *world,
                      const ew_viewport *viewport, ew_geometry *geometry, ew_object *objects);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

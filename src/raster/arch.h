@@ -72,7 +72,10 @@ EW_ALWAYS_INLINE int ew_zeros_of(uint32_t w) { return ew_clz32(w | 1u); }
     (defined(__thumb2__) || !defined(__clang__)) && !EW_TRACE
 #define EW_HAS_PIXEL_LOOP 1
 #define EW_AT(type, field, where) (offsetof(type, field) == (where))
-typedef char ew_rows_order[EW_AT(ew_rows, edge, 28) && EW_AT(ew_rows, planes, 32) && EW_AT(ew_rows, x1, 40) &&
+typedef char ew_packing_order[EW_AT(ew_packing, texels, 0) && EW_AT(ew_packing, turn, 4) && EW_AT(ew_packing, mask, 8) ? 1 : -1];
+typedef char ew_rows_order[EW_AT(ew_rows, texels, 0) && EW_AT(ew_rows, turn, 4) && EW_AT(ew_rows, mask, 8) &&
+                           EW_AT(ew_rows, dhigh, 12) && EW_AT(ew_rows, dlow, 16) && EW_AT(ew_rows, rest, 20) &&
+                           EW_AT(ew_rows, end, 24) && EW_AT(ew_rows, edge, 28) && EW_AT(ew_rows, planes, 32) && EW_AT(ew_rows, x1, 40) &&
                            EW_AT(ew_rows, depth, 44) && EW_AT(ew_rows, stride, 48) && EW_AT(ew_rows, apart, 52) &&
                            EW_AT(ew_rows, left, 56) && EW_AT(ew_rows, reached, 60) && EW_AT(ew_rows, recip, 64) &&
                            EW_AT(ew_rows, low, 68) && EW_AT(ew_rows, log2_height, 72) && EW_AT(ew_rows, is_256, 76) &&
@@ -156,12 +159,14 @@ EW_ALWAYS_INLINE uint32_t ew_fill_pixels(ew_packing *k, uint16_t *c, uint16_t *z
                            [apart] "r"(apart)
                          : "cc", "memory");
     } else { /* all registers but r7: GCC does not find them where there is an FPU */
+        const uint16_t *const texels = k->texels; /* no load once the first has its register: instruments may call */
+        const uint32_t mask = k->mask, turn = k->turn;
         register uint16_t *z_ __asm__("r0") = z;
         register int32_t n_ __asm__("r1") = n;
         register uint32_t w_ __asm__("r2") = w, high_ __asm__("r3") = high, low_ __asm__("r4") = low, t_ __asm__("r5");
         register uint32_t dw_ __asm__("r6") = dw, dhigh_ __asm__("r8") = dhigh, dlow_ __asm__("r9") = dlow;
-        register const uint16_t *texels_ __asm__("r10") = k->texels;
-        register uint32_t apart_ __asm__("r11") = apart, mask_ __asm__("r12") = k->mask, turn_ __asm__("lr") = k->turn;
+        register const uint16_t *texels_ __asm__("r10") = texels;
+        register uint32_t apart_ __asm__("r11") = apart, mask_ __asm__("r12") = mask, turn_ __asm__("lr") = turn;
         __asm__ volatile(EW_PIXELS("ror %[t], %[high], %[turn]\n\tand %[t], %[t], %[mask]\n\t")
                          : [z] "+r"(z_), [n] "+r"(n_), [w] "+r"(w_), [high] "+r"(high_), [low] "+r"(low_), [t] "=&r"(t_)
                          : [dw] "r"(dw_), [dhigh] "r"(dhigh_), [dlow] "r"(dlow_), [texels] "r"(texels_),

@@ -95,7 +95,9 @@ static int set_up(ew_raster *raster, const ew_raster_vertex *a, const ew_raster_
 EW_ALWAYS_INLINE int draw_quick(ew_raster *raster, ew_triangle *t, ew_edge *edge, int32_t row, int32_t end)
 {
     if (t->walk == WALK_PACKED) return ew_rows_packed(raster, t, edge, row, end);
-    if (EW_HAS_SPAN_LOOP && t->walk == WALK_RUNS) return ew_rows_of_runs(raster, t, edge, row, end);
+#if EW_HAS_SPAN_LOOP
+    if (t->walk == WALK_RUNS) return ew_rows_of_runs(raster, t, edge, row, end);
+#endif
     return ew_rows_of_texture(raster, t, edge, row, end);
 }
 

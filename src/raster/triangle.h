@@ -25,8 +25,8 @@ enum {
 enum { PLAIN_NEVER, PLAIN_SOMETIMES, PLAIN_ALWAYS };
 
 /* How its rows are walked (span.c): by ew_rows_of_any; textured and plain, by ew_rows_of_texture; if the table's
- * reciprocal will do for its runs, too, by ew_rows_of_runs where arch.h has machine code for it; if u, v and depth are linear over the whole triangle, by
- * ew_rows_packed. */
+ * reciprocal will do for its runs, too, by ew_rows_of_runs where arch.h has machine code for it; if u, v and depth
+ * are linear over the whole triangle, by ew_rows_packed. */
 enum { WALK_ANY, WALK_TEXTURE, WALK_RUNS, WALK_PACKED };
 
 /* What the loop of span.c needs to know of raster->texture. */

@@ -7,10 +7,10 @@
 #include <new>
 
 #include "bake.hpp"
+#include "edgewalk/edgewalk.h"
 #include "files.hpp"
 
 extern "C" {
-#include "edgewalk/edgewalk.h"
 #include "../common/options.h"
 }
 

@@ -7,6 +7,8 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "whole_file.h"
+
 struct ew_player {
     const char *tool;
     char *path;
@@ -46,6 +48,7 @@ static int load(ew_player *p, size_t *size)
         fclose(file);
         return complain(p, "cannot read the scene", S_ISDIR(st.st_mode) ? "it is a directory" : "not a file");
     }
+    ew_whole_file_spare(fileno(file));
     if (st.st_size > LARGEST_FILE) {
         fclose(file);
         return complain(p, "cannot read the scene", "larger than 256 MiB");
@@ -63,6 +66,7 @@ static int prepare(ew_player *p, unsigned width, unsigned height)
     size_t size;
     if (load(p, &size)) return -1;
     if (size == 0) return complain(p, "not a baked scene", "the file is empty");
+    if (size >= 4 && memcmp(p->bytes, "glTF", 4) == 0) return complain(p, "not a baked scene", "a glTF model, for ew-bake to bake");
     int error = ew_scene_open(&p->scene, p->bytes, size);
     if (error) return complain(p, "not a usable baked scene", ew_error_text(error));
     ew_scene_get_camera(&p->scene, &p->still);

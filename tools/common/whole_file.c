@@ -8,6 +8,18 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+static struct stat input; /* st_ino 0: none */
+
+void ew_whole_file_spare(int descriptor)
+{
+    if (fstat(descriptor, &input) != 0) input.st_ino = 0;
+}
+
+static int is_input(const struct stat *status)
+{
+    return input.st_ino && status->st_ino == input.st_ino && status->st_dev == input.st_dev;
+}
+
 static int complain(const ew_whole_file *whole, const char *why)
 {
     fprintf(stderr, "%s: %s: cannot be written: %s\n", whole->tool, whole->shown ? whole->shown : "", why);
@@ -33,6 +45,7 @@ int ew_whole_file_open(ew_whole_file *whole, const char *tool, const char *path)
     if (stat(path, &status) == 0) {
         if (!S_ISREG(status.st_mode)) why = strerror(S_ISDIR(status.st_mode) ? EISDIR : EINVAL);
         if (why && !S_ISDIR(status.st_mode)) why = "not a regular file";
+        if (!why && is_input(&status)) why = "is the input file";
         whole->target = realpath(path, NULL);
     } else {
         whole->target = strdup(path);
@@ -54,6 +67,12 @@ int ew_whole_file_open(ew_whole_file *whole, const char *tool, const char *path)
 int ew_whole_file_close(ew_whole_file *whole, int keep)
 {
     if (!whole->file) return 0;
+    struct stat status;
+    if (keep && stat(whole->target, &status) == 0 && is_input(&status)) { /* read only after this was opened */
+        complain(whole, "is the input file");
+        ew_whole_file_close(whole, 0);
+        return -1;
+    }
     errno = 0;
     int bad = ferror(whole->file) != 0;
     bad |= fclose(whole->file) != 0;

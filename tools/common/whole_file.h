@@ -16,6 +16,8 @@ typedef struct ew_whole_file {
 /* path NULL: nothing is written, 0 is returned and close does nothing. `whole` need not be
  * initialised. */
 int ew_whole_file_open(ew_whole_file *whole, const char *tool, const char *path);
+/* The file of this descriptor is read: from now on, to write over it is refused. One file. */
+void ew_whole_file_spare(int descriptor);
 /* Gives the file its name, or with keep = 0 removes what was written. */
 int ew_whole_file_close(ew_whole_file *whole, int keep);
 

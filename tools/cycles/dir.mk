@@ -35,7 +35,7 @@ $(C)/count.so: tools/cycles/count.c
 
 # $(C)/BITS/bench-TARGET; the scenes' data is compiled once for each target
 define bench_target
-$(C)/data-$(1).o: $(C)/scene_data.c
+$(C)/data-$(1).o: $(C)/scene_data.c $(BOARD)/boards.mk
 	@mkdir -p $$(@D); echo "CC $$@"; $$(call bench_cc,$(1)) $$(DEPFLAGS) -Iinclude -Itools/cycles -c -o $$@ $$<
 $(C)/%/bench-$(1): $(CYCLES_DEPS) $(C)/data-$(1).o $(board_$(1)) $(wildcard $(BOARD)/*.ld $(BOARD)/*.h)
 	@mkdir -p $$(@D); echo "CC $$@"

@@ -7,7 +7,7 @@ program=ew-stream
 config=/sys/kernel/config/gpio-sim
 
 if [ ! -d $config ]; then
-    for name in 'reset pulse' 'TE pacing' 'dead TE line' 'wrong lines'; do
+    for name in 'reset pulse' 'reset line is let go' 'TE pacing' 'dead TE line' 'wrong lines'; do
         skip "gpio: $name" "this kernel has no gpio-sim"
     done
     exit 0

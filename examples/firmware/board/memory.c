@@ -1,8 +1,9 @@
 #include <stddef.h>
 
-/* The compiler may call these even in freestanding code; a C library has faster ones. */
-void *memset(void *to, int c, size_t n);
-void *memcpy(void *restrict to, const void *restrict from, size_t n);
+/* The compiler may call these even in freestanding code; a C library has faster ones. `used`, since with -flto
+ * they may be thrown away before it does. */
+__attribute__((used)) void *memset(void *to, int c, size_t n);
+__attribute__((used)) void *memcpy(void *restrict to, const void *restrict from, size_t n);
 
 void *memset(void *to, int c, size_t n)
 {
